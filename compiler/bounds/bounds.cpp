@@ -71,7 +71,10 @@ class Analysis {
     const FoldTerm term = foldTerm(all_.graph, output.node, output.before, kernel_.loc);
     bound(term.node, number);
     if (number.notBounded.empty()) {
-      const FoldFacts facts{term, number.range, number.absolute, output.type};
+      Evaluator magnitude(all_.graph, term.isSum ? term.magnitude : term.node);
+      const double largest =
+          maximise(magnitude, all_.graph, Objective::Largest, search(magnitude, 0.1)).bound;
+      const FoldFacts facts{term, number.range, number.absolute, largest, output.type, output.param};
       const FoldBound whole = boundOfFold(facts, kernel_, options_);
       number.range = whole.range;
       number.absolute = whole.absolute;

@@ -16,6 +16,7 @@ struct Part {
   Kind kind = Kind::None;
   NodeId node = noNode;  ///< what is added or compared; noNode for an element that contributes nothing
   int terms = 0;
+  NodeId magnitude = noNode;  ///< of a sum: the sum of the magnitudes of its terms
 };
 
 [[noreturn]] void refuse(Loc loc) {
@@ -42,7 +43,10 @@ class TermFinder {
       other = graph_.add({.op = Op::Negate, .operands = {other, noNode, noNode}, .loc = node.loc});
     const Kind kind = isSum ? Kind::Sum : node.op == Op::Min ? Kind::Min : Kind::Max;
     if (inner.kind != Kind::None && inner.kind != kind) refuse(loc_);
-    return {kind, joined(kind, inner.node, other), inner.terms + 1};
+    const NodeId magnitude =
+        graph_.add({.op = Op::Absolute, .operands = {other, noNode, noNode}, .loc = node.loc});
+    return {kind, joined(kind, inner.node, other), inner.terms + 1,
+            joined(Kind::Sum, inner.magnitude, magnitude)};
   }
 
  private:
@@ -69,11 +73,13 @@ class TermFinder {
       const NodeId zero = graph_.constant(0);
       const NodeId one = graph_.select(node.operands[0], yes.node == noNode ? zero : yes.node,
                                        no.node == noNode ? zero : no.node, node.loc);
-      return {kind, one, terms};
+      const NodeId magnitude = graph_.select(node.operands[0], yes.magnitude == noNode ? zero : yes.magnitude,
+                                             no.magnitude == noNode ? zero : no.magnitude, node.loc);
+      return {kind, one, terms, magnitude};
     }
     if (yes.node == noNode) return no;
     if (no.node == noNode) return yes;
-    return {kind, graph_.select(node.operands[0], yes.node, no.node, node.loc), terms};
+    return {kind, graph_.select(node.operands[0], yes.node, no.node, node.loc), terms, yes.magnitude};
   }
 
   Graph& graph_;
@@ -91,12 +97,25 @@ sk::Precision precisionOf(Precision precision) {
   return sk::Precision::Single;
 }
 
+/// How a call adds that says nothing about it: with compensation, if skc knows the sum for one.
+sk::Accumulate accumulateOf(const ir::Kernel& kernel, std::uint32_t accumulator) {
+  const auto declared = static_cast<sk::Accumulate>(kernel.choices.accumulate);
+  const auto isIt = [&](const auto& sum) { return sum.accumulator == accumulator; };
+  const ir::Reduction* const reduction = kernel.reduction ? &*kernel.reduction : nullptr;
+  const bool isCompensated = reduction != nullptr && reduction->compensated &&
+                             std::ranges::any_of(reduction->compensated->sums, isIt);
+  const bool isExact = reduction != nullptr && std::ranges::any_of(reduction->exact, isIt);
+  if (declared == sk::Accumulate::Exact && isExact) return declared;
+  if (declared == sk::Accumulate::Tree || declared == sk::Accumulate::Extended) return declared;
+  return isCompensated ? sk::Accumulate::Compensated : sk::Accumulate::Tree;
+}
+
 }  // namespace
 
 FoldTerm foldTerm(Graph& graph, NodeId after, NodeId before, Loc loc) {
   const Part part = TermFinder(graph, before, loc).partOf(after);
-  if (part.kind == Kind::None) return {graph.constant(0), true, 1};
-  return {part.node, part.kind == Kind::Sum, part.terms};
+  if (part.kind == Kind::None) return {graph.constant(0), true, 1, graph.constant(0)};
+  return {part.node, part.kind == Kind::Sum, part.terms, part.magnitude};
 }
 
 FoldBound boundOfFold(const FoldFacts& facts, const ir::Kernel& kernel, const Options& options) {
@@ -113,16 +132,16 @@ FoldBound boundOfFold(const FoldFacts& facts, const ir::Kernel& kernel, const Op
   }
   if (options.precision == Precision::Half) throw NotBounded("a sum in half precision", kernel.loc);
   const double n = options.elements;
-  const double largest = sumUp(facts.range.magnitude(), facts.error);
+  // Computed terms are larger by their errors.
+  const double largest = sumUp(facts.magnitude, facts.error);
   sk::SumFacts sum;
-  const auto accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate);
-  sum.accumulate = accumulate == sk::Accumulate::Default ? sk::Accumulate::Compensated : accumulate;
+  sum.accumulate = accumulateOf(kernel, facts.accumulator);
   sum.precision = precisionOf(options.precision);
   sum.isScan = kernel.isScan;
   sum.elements = n;
   sum.terms = n * facts.term.terms;
   sum.magnitude = n * largest;
-  sum.sum = n * largest;
+  sum.sum = n * sumUp(facts.range.magnitude(), facts.error);
   sum.areDoubles = facts.type == ir::Scalar::Double;
   sk::SummingDevice device;
   device.isNative = options.target == Target::Native;

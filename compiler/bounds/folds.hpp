@@ -3,6 +3,7 @@
 // Reduces and scans that add their elements, or take the smallest or largest: what one element contributes, and the bound for all of them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "bounds/graph.hpp"
@@ -16,6 +17,7 @@ struct FoldTerm {
   NodeId node;
   bool isSum;  ///< else the smallest or largest
   int terms;  ///< that one element adds, at most
+  NodeId magnitude;  ///< the sum of their magnitudes
 };
 
 /// Throws NotBounded unless `after` adds numbers to `before`, or takes the smallest or the largest of it and a number.
@@ -25,7 +27,9 @@ struct FoldFacts {
   FoldTerm term;
   Interval range;  ///< of a term
   double error;  ///< bound for a term
+  double magnitude;  ///< of the terms of an element, at most
   ir::Scalar type;
+  std::uint32_t accumulator;  ///< its number among the kernel's parameters
 };
 struct FoldBound {
   Interval range;

@@ -230,10 +230,32 @@ NodeId Graph::disjunction(NodeId a, NodeId b) {
   return add({.op = Op::Or, .operands = {a, b, noNode}, .loc = nodes_[a].loc});
 }
 
+/// A choice that is the smaller, the larger or the magnitude: these have no jump where rounding flips the condition.
+NodeId Graph::extreme(NodeId condition, NodeId yes, NodeId no, Loc loc) {
+  const Node& compared = nodes_[condition];
+  if (compared.op != Op::Less && compared.op != Op::LessEqual) return noNode;
+  const NodeId a = compared.operands[0], b = compared.operands[1];
+  Node node{.op = Op::Min, .operands = {yes, no, noNode}, .integer = nodes_[yes].integer};
+  node.loc = loc;
+  if (yes == a && no == b) return add(node);
+  node.op = Op::Max;
+  if (yes == b && no == a) return add(node);
+  node.op = Op::Absolute;
+  const auto isNegativeOf = [&](NodeId id, NodeId x) {
+    return nodes_[id].op == Op::Negate && nodes_[id].operands[0] == x;
+  };
+  node.operands = {a, noNode, noNode};
+  if (isConstant(b, 0) && no == a && isNegativeOf(yes, a)) return add(node);  // x < 0 ? -x : x
+  node.operands = {b, noNode, noNode};
+  if (isConstant(a, 0) && yes == b && isNegativeOf(no, b)) return add(node);  // 0 < x ? x : -x
+  return noNode;
+}
+
 NodeId Graph::select(NodeId condition, NodeId yes, NodeId no, Loc loc) {
   if (isConstant(condition)) return nodes_[condition].value != 0 ? yes : no;
   if (yes == no) return yes;
   if (nodes_[condition].op == Op::Not) return select(nodes_[condition].operands[0], no, yes, loc);
+  if (const NodeId known = extreme(condition, yes, no, loc); known != noNode) return known;
   Node node{.op = Op::Select, .operands = {condition, yes, no}};
   if (nodes_[yes].integer == nodes_[no].integer) node.integer = nodes_[yes].integer;
   node.loc = loc;

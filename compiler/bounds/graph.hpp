@@ -143,6 +143,7 @@ class Graph {
   std::vector<NodeId> neededBy(const std::vector<NodeId>& roots) const;
 
  private:
+  NodeId extreme(NodeId condition, NodeId yes, NodeId no, Loc loc);
   void noteScaling(Node& node) const;
   NodeId simplified(const Node& node);
   NodeId unique(const Node& node);

@@ -80,10 +80,9 @@ class Writer {
       isFirst = false;
     }
     for (const Jump& jump : number.jumps) {
-      const std::string change = std::isfinite(jump.change)
-                                     ? "the result changes by up to " + bound(jump.change)
-                                     : "the result changes";
-      add(fmt::format("    where rounding turns `{}`{}, {} besides", jump.text, line(jump.loc), change));
+      const std::string change = std::isfinite(jump.change) ? " by up to " + bound(jump.change) : "";
+      add(fmt::format("    where rounding flips `{}`{}, the result may also change{}", jump.text,
+                      line(jump.loc), change));
     }
     for (const Rewrite& rewrite : number.rewrites)
       add(fmt::format("    with {} for {}: error at most {}", rewrite.to, rewrite.from,

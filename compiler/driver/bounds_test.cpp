@@ -89,6 +89,9 @@ TEST_CASE("branches: the side taken counts, and conditions that rounding turns s
   CHECK(ofBody("r = x > 1 ? log(x - 1) : 0;", {"x=0:1", "y=0"}).absolute == 0);
   const NumberBound choice = ofBody("float t = x * y; r = t > 1 && t < 2 ? t : 1;", units);
   CHECK(choice.absolute == Approx(u).epsilon(0.05));
+  const NumberBound magnitude = ofBody("float t = x * y - 1.5f; r = t < 0 ? -t : t;", units);
+  CHECK(magnitude.jumps.empty());
+  CHECK(magnitude.absolute < 4.1 * u);
   const NumberBound step = ofBody("r = floor(x * y);", units);
   REQUIRE(step.jumps.size() == 1);
   CHECK(step.jumps[0].change == Approx(1).epsilon(0.1));
@@ -170,6 +173,12 @@ TEST_CASE("reduces: sums by their known bound, and extremes by that of an elemen
   CHECK(known.absolute == Approx(1000 * 2 * u + 4000 * u).epsilon(0.05));
   const char* const largest = "reduce void most(float x<>, reduce float m<>) { m = max(m, x * x); }";
   CHECK(boundOf(largest, {"x=1:2"}).absolute == Approx(2 * u).epsilon(0.05));
+  const char* const chosen = "reduce void least(float x<>, reduce float m<>) { if (x * x < m) m = x * x; }";
+  CHECK(boundOf(chosen, {"x=1:2"}).absolute == Approx(2 * u).epsilon(0.05));
+  // Terms that cancel have been added all the same.
+  const char* const cancelling =
+      "[[accumulate(tree)]] reduce void rest(float x<>, reduce float s<>) { s = x + (s + 2 - x); }";
+  CHECK(boundOf(cancelling, {"x=1000"}, options).absolute > 1000 * 1000 * u);
   const char* const some = "reduce void some(float x<>, reduce float s<>) { if (x > 1.5f) s += x; }";
   CHECK(boundOf(some, {"x=1:2"}, options).range.low == 0);
   const char* const product = "reduce void times(float x<>, reduce float s<>) { s *= x; }";

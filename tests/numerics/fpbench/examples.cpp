@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include <quadmath.h>
 
@@ -239,12 +240,121 @@ std::vector<Example> makeExamples() {
   };
 }
 
+Quad current(Quads x) {
+  const Quad pi = q(3.14159265359), im = 2 * pi * x[2] * x[3], d = x[1] * x[1] + im * im;
+  const Quad re = x[4] * x[1] / d, ci = -x[4] * im / d;
+  return sqrtq(re * re + ci * ci) * cosq(2 * pi * x[2] * x[0] + atanq(ci / re));
+}
+
+std::vector<Example> otherExamples() {
+  return {
+      {"smartRoot",
+       "smartRoot",
+       {{"c", -2, 1}},
+       0,
+       SK_RUN(smartRoot, s[0]),
+       [](Quads x) {
+         const Quad b = q(3.5), root = sqrtq(b * b - 12 * x[0]);
+         return b * b - 3 * x[0] > 10 ? 2 * x[0] / (-b - root) : (root - b) / 6;
+       }},
+      {"cav10",
+       "cav10",
+       {{"x", 0, 10}},
+       0,
+       SK_RUN(cav10, s[0]),
+       [](Quads x) { return x[0] * x[0] - x[0] >= 0 ? x[0] / 10 : x[0] * x[0] + 2; }},
+      {"squareRoot3",
+       "squareRoot3",
+       {{"x", 0, 10}},
+       0,
+       SK_RUN(squareRoot3, s[0]),
+       [](Quads x) { return x[0] < q(1e-5) ? 1 + x[0] / 2 : sqrtq(1 + x[0]); }},
+      {"triangle",
+       "triangle",
+       {{"a", 9, 9}, {"b", 4.71, 4.89}, {"c", 4.71, 4.89}},
+       0,
+       SK_RUN(triangle, s[0], s[1], s[2]),
+       [](Quads x) {
+         const Quad h = (x[0] + x[1] + x[2]) / 2;
+         return sqrtq(h * (h - x[0]) * (h - x[1]) * (h - x[2]));
+       }},
+      {"bspline3",
+       "bspline3",
+       {{"u", 0, 1}},
+       0,
+       SK_RUN(bspline3, s[0]),
+       [](Quads x) { return -(x[0] * x[0] * x[0]) / 6; }},
+      {"polarToCarthesian, x",
+       "polarX",
+       {{"radius", 1, 10}, {"theta", 0, 360}},
+       0,
+       SK_RUN(polarX, s[0], s[1]),
+       [](Quads x) { return x[0] * cosq(x[1] * (q(3.14159265359) / 180)); }},
+      {"instantaneousCurrent",
+       "current",
+       {{"t", 0, 300},
+        {"resistance", 1, 50},
+        {"frequency", 1, 100},
+        {"inductance", 0.001, 0.004},
+        {"voltage", 1, 12}},
+       0,
+       SK_RUN(current, s[0], s[1], s[2], s[3], s[4]),
+       current},
+      {"matrixDeterminant", "determinant9", alike("abcdefghi", -10, 10), 0,
+       SK_RUN(determinant9, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]),
+       [](Quads m) {
+         return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+                m[2] * (m[3] * m[7] - m[4] * m[6]);
+       }},
+      {"delta", "delta", alike("abcdef", 4, 6.3504), 0, SK_RUN(delta, s[0], s[1], s[2], s[3], s[4], s[5]),
+       kepler2},
+      {"sqrt_add",
+       "sqrtAdd",
+       {{"x", 1, 1000}},
+       0,
+       SK_RUN(sqrtAdd, s[0]),
+       [](Quads x) { return sqrtq(x[0] + 1) - sqrtq(x[0]); }},
+      {"exp1x",
+       "exp1x",
+       {{"x", 0.01, 0.5}},
+       0,
+       SK_RUN(exp1x, s[0]),
+       [](Quads x) { return expm1q(x[0]) / x[0]; }},
+      {"exp1x_log",
+       "exp1xLog",
+       {{"x", 0.01, 0.5}},
+       0,
+       SK_RUN(exp1xLog, s[0]),
+       [](Quads x) { return expm1q(x[0]) / x[0]; }},
+      {"x_by_xy", "xByXy", alike("xy", 1, 4), 0, SK_RUN(xByXy, s[0], s[1]),
+       [](Quads x) { return x[0] / (x[0] + x[1]); }},
+      {"nonlin2", "nonlin2", alike("xy", 1.001, 2), 0, SK_RUN(nonlin2, s[0], s[1]),
+       [](Quads x) { return 1 / (x[0] * x[1] + 1); }},
+      {"i4",
+       "i4",
+       {{"x", 0.1, 10}, {"y", -5, 5}},
+       0,
+       SK_RUN(i4, s[0], s[1]),
+       [](Quads x) { return sqrtq(x[0] + x[1] * x[1]); }},
+      {"i6",
+       "i6",
+       {{"x", 0.1, 10}, {"y", -5, 5}},
+       0,
+       SK_RUN(i6, s[0], s[1]),
+       [](Quads x) { return sinq(x[0] * x[1]); }},
+  };
+}
+
 #undef SK_RUN
 
 }  // namespace
 
 const std::vector<Example>& examples() {
-  static const std::vector<Example> all = makeExamples();
+  static const std::vector<Example> all = [] {
+    std::vector<Example> list = makeExamples();
+    for (Example& example : otherExamples()) list.push_back(std::move(example));
+    return list;
+  }();
   return all;
 }
 
