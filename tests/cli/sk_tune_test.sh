@@ -125,6 +125,17 @@ run 0 --result-file state.tga --psnr 40 --budget 20s --json all.json -- "$progra
 json "assert all['results'] == [{'name': 'state.tga', 'metric': 'psnr', 'tolerance': 40}], all['results']"
 refuses "there is no tolerance for 'state.npy'; give --tolerance" --result-file state.npy -- "$program" array state.npy 500
 
+# The right results are kept by the contents of the program, also of one that a shell finds in a command line.
+cp "$program" copy
+kept() { find cache -name 'truth-*' | wc -l; }
+run 0 --tolerance 1e-3 --budget 5s --verify './copy settle 90' -- ./copy settle 80
+first=$(kept)
+run 0 --tolerance 1e-3 --budget 5s --verify './copy settle 90' -- ./copy settle 80
+(($(kept) == first)) || broken 'the same program has other right results'
+echo >>copy
+run 0 --tolerance 1e-3 --budget 5s --verify './copy settle 90' -- ./copy settle 80
+(($(kept) == first + 2)) || broken 'another program has the same right results'
+
 # Decisions stay as they are, unless they may change.
 run 0 --tolerance 1e-3 --budget 40s -o odd.toml -- "$program" odd 12000
 lacks odd.toml 'tuned::settle'

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -43,11 +44,11 @@ std::string contentsOf(const fs::path& file) {
   return fmt::format("{} {:016x}", size, sk::hashOf(std::string(std::istreambuf_iterator<char>(in), {})));
 }
 
-/// The file of a program that is found as execvp finds it; nullopt if there is none.
+/// The file of this name, or of a program that is found as execvp finds it; nullopt if there is none.
 std::optional<fs::path> fileOfProgram(const std::string& name) {
   std::error_code error;
-  if (name.find('/') != std::string::npos)
-    return fs::exists(name, error) ? std::optional(fs::path(name)) : std::nullopt;
+  if (fs::exists(name, error)) return name;
+  if (name.find('/') != std::string::npos) return std::nullopt;
   const char* const path = std::getenv("PATH");
   std::string rest = path == nullptr ? "/usr/bin:/bin" : path;
   while (!rest.empty()) {
@@ -59,14 +60,30 @@ std::optional<fs::path> fileOfProgram(const std::string& name) {
   return std::nullopt;
 }
 
+/// The words of a word, which may be a command line for the shell, without quotes.
+std::vector<std::string> partsOf(const std::string& word) {
+  std::vector<std::string> parts(1);
+  for (const char c : word) {
+    if (c == '\'' || c == '"') continue;
+    if (std::isspace(static_cast<unsigned char>(c)) != 0 || c == ';') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  std::erase(parts, "");
+  return parts;
+}
+
 std::string keyOf(const Application& application) {
   std::string key = fmt::format("{}\n", fs::current_path().string());
   for (const std::string& word : application.words()) {
-    std::error_code error;
-    const bool isFirst = &word == &application.words().front();
-    const std::optional<fs::path> file = isFirst ? fileOfProgram(word) : std::optional(fs::path(word));
-    const bool isFile = file && fs::is_regular_file(*file, error);
-    key += fmt::format("{} {}\n", word, isFile ? contentsOf(*file) : "");
+    key += word + '\n';
+    for (const std::string& part : partsOf(word)) {
+      std::error_code error;
+      const std::optional<fs::path> file = fileOfProgram(part);
+      if (file && fs::is_regular_file(*file, error)) key += fmt::format("{} {}\n", part, contentsOf(*file));
+    }
   }
   for (const ResultFile& file : application.files()) key += file.name() + '\n';
   std::vector<std::string> variables;
@@ -94,7 +111,11 @@ Truth truthOf(const Application& application, bool isFresh) {
   const sk::CacheFolder cache;
   const std::string key = keyOf(application);
   if (const auto known = isFresh ? std::nullopt : cache.read("truth", key)) {
-    return {.process = sk::results::fromBytes(*known, "truth"), .isCached = true};
+    try {
+      return {.process = sk::results::fromBytes(*known, "truth"), .isCached = true};
+    } catch (const std::runtime_error&) {
+      // of another version of StreamKernel: computed anew
+    }
   }
   RunResult result =
       application.run({.environment = {{"SK_DEVICE", "reference"}, {"SK_CONFIG", std::nullopt}}});
