@@ -35,6 +35,8 @@ def build(source, folder, built=None):
         return
     need()
     run("-p", os.path.join(source, "runtime/web"), "--outDir", folder)
+    page = ["-D", f"IN={source}/runtime/src/shadow/report", "-D", f"OUT={folder}/shadow/page.js"]
+    subprocess.run(["cmake", *page, "-P", f"{source}/cmake/SkEmbedPage.cmake"], check=True)
 
 
 def gzipped(source):
@@ -42,7 +44,7 @@ def gzipped(source):
     with tempfile.TemporaryDirectory() as folder:
         run("-p", os.path.join(source, "runtime/web"), "--outDir", folder, "--removeComments", "--declaration", "false")
         modules = b""
-        for name in sorted(glob.glob(f"{folder}/*.js")):
+        for name in sorted(glob.glob(f"{folder}/**/*.js", recursive=True)):
             with open(name, "rb") as module:
                 modules += module.read()
     return len(gzip.compress(modules))

@@ -68,7 +68,7 @@ export class Counterpart {
 
   /** The device's elements are others now. */
   leave(isOfPage: boolean): void {
-    this.isOfPage = isOfPage || (this.isOfPage && !this.isFresh);
+    this.isOfPage = isOfPage;
     this.isFresh = false;
   }
 
@@ -90,6 +90,7 @@ export class Counterpart {
   private replace(held: AnyStream): void {
     this.held?.dispose();
     this.held = held;
+    this.record.shape = [...(held.shape as readonly number[])];
     this.isFresh = true;
     this.isOfPage = false;
   }

@@ -264,7 +264,7 @@ export class FollowedCall {
 
   /** The device has written elements that the reference has not. */
   private loseOutputs(): void {
-    for (const { of } of this.outputs) if (of !== null) this.follower.counterpartOf(viewOf(of).stream).leave(false);
+    for (const { of } of this.outputs) if (of !== null) this.follower.lose(viewOf(of).stream);
   }
 
   private end(): void {

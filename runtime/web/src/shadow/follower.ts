@@ -91,8 +91,7 @@ export class Follower implements Observer {
       const counterpart = this.counterparts.get(view.stream);
       if (counterpart === undefined) return;
       if (view.size < view.stream.size) return counterpart.takePart(view);
-      counterpart.leave(true);
-      this.compareLater(0, () => void (counterpart.errors = noErrors()));
+      this.leave(counterpart, true);
     });
   }
 
@@ -104,7 +103,7 @@ export class Follower implements Observer {
       const isWhole = target.size === target.stream.size;
       if (counterpart === undefined || held === null) {
         if (!isWhole || !counterpart || counterpart.isWrittenByPage) this.written(to);
-        else this.counterparts.get(target.stream)?.leave(false);
+        else this.lose(target.stream);
         return;
       }
       const other = this.counterpartOf(target.stream);
@@ -132,6 +131,16 @@ export class Follower implements Observer {
     this.counterparts.set(stream, counterpart);
     this.records.streams.push(counterpart.record);
     return counterpart;
+  }
+
+  /** The device has elements that the reference has not computed. */
+  lose(stream: AnyStream): void {
+    this.leave(this.counterpartOf(stream), false);
+  }
+
+  private leave(counterpart: Counterpart, isOfPage: boolean): void {
+    counterpart.leave(isOfPage);
+    this.compareLater(0, () => void (counterpart.errors = noErrors()));
   }
 
   callerOf(form: Callable, file: LoadedFile): FormCaller {

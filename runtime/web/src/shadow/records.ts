@@ -59,7 +59,8 @@ export class KernelRecord {
 export interface StreamRecord {
   name: string;
   readonly type: string;
-  readonly shape: readonly number[];
+  /** Kernels that push change it. */
+  shape: readonly number[];
   resyncs: number;
   readonly points: Series;
 }

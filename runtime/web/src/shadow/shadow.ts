@@ -67,6 +67,13 @@ export class Shadow {
     return tableOf(await this.report());
   }
 
+  /** The report as a page of HTML, which needs nothing else: for a file, or a window of its own. */
+  async html(): Promise<string> {
+    const { page } = await import('./page.js');
+    const json = JSON.stringify(await this.report()).replace(/</g, '\\u003c'); // "</script>" means something even within a text
+    return page.replace('/*REPORT*/null', () => json);
+  }
+
   /** Gives a stream a name, by which the report calls it. */
   name(stream: Stream<any, number>, name: string): void {
     if (!(stream instanceof Stream) || typeof name !== 'string' || name === '') fail('name() takes a stream and its name');
