@@ -40,17 +40,27 @@ function scaleOf(scalar: Scalar): number {
 
 /** The components of a plane's texels; integers beyond 2^53 are rounded. */
 function componentsOf({ scalar, width }: Field, channels: HostArray, channelCount: number, isPacked: boolean): Float64Array[] {
-  const texels = channels.length / channelCount;
-  if (isPacked) return [Float64Array.from(channels as Float32Array, (x) => x * scaleOf(scalar))];
   const words = channels as Uint32Array;
-  const doubles = scalar === 'double' ? new Float64Array(words.buffer, words.byteOffset, words.length / 2) : null;
-  const high = scalar === 'long' ? new Int32Array(words.buffer, words.byteOffset, words.length) : words;
-  const at = (i: number, c: number) => {
-    if (doubles !== null) return doubles[(i * channelCount) / 2 + c]!;
-    if (is64Bit(scalar)) return high[i * channelCount + 2 * c + 1]! * 2 ** 32 + words[i * channelCount + 2 * c]!;
-    return words[i * channelCount + c]! * scaleOf(scalar);
-  };
-  return Array.from({ length: width }, (_, c) => Float64Array.from({ length: texels }, (_, i) => at(i, c)));
+  const scale = scaleOf(scalar);
+  if (isPacked) return [every(words, 0, 1, scale)];
+  const components = Array.from({ length: width }, (_, c) => c);
+  if (scalar === 'double') {
+    const doubles = new Float64Array(words.buffer, words.byteOffset, words.length / 2);
+    return components.map((c) => every(doubles, c, channelCount / 2, 1));
+  }
+  if (!is64Bit(scalar)) return components.map((c) => every(words, c, channelCount, scale));
+  const upper = scalar === 'long' ? new Int32Array(words.buffer, words.byteOffset, words.length) : words;
+  return components.map((c) => {
+    const low = every(words, 2 * c, channelCount, 1);
+    return every(upper, 2 * c + 1, channelCount, 2 ** 32).map((high, i) => high + low[i]!);
+  });
+}
+
+/** Each `step`-th number from `first` on, times `scale`. */
+function every(numbers: ArrayLike<number>, first: number, step: number, scale: number): Float64Array {
+  const taken = new Float64Array(numbers.length / step);
+  for (let i = 0; i < taken.length; ++i) taken[i] = numbers[first + i * step]! * scale;
+  return taken;
 }
 
 /** Asks for the elements, as all calls before have left them. */

@@ -106,26 +106,44 @@ export function compare(areReal: readonly boolean[], device: Columns, own: Colum
   return errors;
 }
 
+/** One element, whose error is not finite. */
+function addExceptional(errors: OutputErrors, component: number, i: number, d: number, o: number): void {
+  if (Number.isFinite(d)) return;
+  const isNan = Number.isNaN(d);
+  note(isNan ? errors.nans : errors.infinities, i, component);
+  if (Number.isFinite(o)) note(isNan ? errors.newNans : errors.newInfinities, i, component);
+}
+
+/** The sums are variables of the loop, which must not allocate: it runs over all elements that a page computes. */
 function addReals(errors: OutputErrors, component: number, ds: Float64Array, os: Float64Array, rs: Float64Array): void {
+  let [reals, reference2, own2, inherited2, total2, ownInTotal] = [0, 0, 0, 0, 0, 0];
+  let [largestOwn, largestTotal] = [errors.own.error, errors.total.error];
   for (let i = 0; i < ds.length; ++i) {
-    const [d, o, r] = [ds[i]!, os[i]!, rs[i]!];
-    if (!Number.isFinite(d)) {
-      const isNan = Number.isNaN(d);
-      note(isNan ? errors.nans : errors.infinities, i, component);
-      if (Number.isFinite(o)) note(isNan ? errors.newNans : errors.newInfinities, i, component);
+    const d = ds[i]!;
+    const o = os[i]!;
+    const r = rs[i]!;
+    const own = d - o;
+    const total = d - r;
+    if (!(Math.abs(own) < Infinity && Math.abs(total) < Infinity)) {
+      addExceptional(errors, component, i, d, o);
       continue;
     }
-    if (!Number.isFinite(o) || !Number.isFinite(r)) continue;
-    const [own, total, inherited] = [d - o, d - r, o - r];
-    ++errors.reals;
-    errors.reference2 += r * r;
-    errors.own2 += own * own;
-    errors.inherited2 += inherited * inherited;
-    errors.total2 += total * total;
-    errors.ownInTotal += own * total;
-    raise(errors.own, Math.abs(own), i, component);
-    raise(errors.total, Math.abs(total), i, component);
+    const inherited = o - r;
+    ++reals;
+    reference2 += r * r;
+    own2 += own * own;
+    inherited2 += inherited * inherited;
+    total2 += total * total;
+    ownInTotal += own * total;
+    if (own > largestOwn || -own > largestOwn) raise(errors.own, (largestOwn = Math.abs(own)), i, component);
+    if (total > largestTotal || -total > largestTotal) raise(errors.total, (largestTotal = Math.abs(total)), i, component);
   }
+  errors.reals += reals;
+  errors.reference2 += reference2;
+  errors.own2 += own2;
+  errors.inherited2 += inherited2;
+  errors.total2 += total2;
+  errors.ownInTotal += ownInTotal;
 }
 
 /** Whether integers differ by more than the rounding of a number that is packed in their upper bits. */
@@ -136,7 +154,9 @@ function differ(a: number, b: number): boolean {
 function addIntegers(errors: OutputErrors, component: number, ds: Float64Array, os: Float64Array, rs: Float64Array): void {
   errors.integers += ds.length;
   for (let i = 0; i < ds.length; ++i) {
-    const [d, o, r] = [ds[i]!, os[i]!, rs[i]!];
+    const d = ds[i]!;
+    const o = os[i]!;
+    const r = rs[i]!;
     if (differ(d, o)) note(errors.ownDecisions, i, component);
     if (differ(d, r)) note(errors.decisions, i, component);
     errors.integerReference2 += r * r;

@@ -50,9 +50,9 @@ export class CallRecorder {
       const arrays = await each.arrays;
       const start = performance.now();
       const errors = compare(scalarsOf(each.element).map(isReal), ...arrays);
+      this.records.comparisonSeconds += (performance.now() - start) / 1000;
       amplification = Math.max(amplification, this.amplificationOf(errors));
       await this.recordOutput(each, errors, arrays);
-      this.records.comparisonSeconds += (performance.now() - start) / 1000;
     }
     if (amplification > 0) record.amplification.add(amplification);
     ++record.followed;
