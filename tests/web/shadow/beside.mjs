@@ -108,6 +108,8 @@ async function folds(device) {
   const x = filled(device, [8, 12], (i) => 1 + i / 7);
   const [y, rows, one] = [device.stream('float', [8, 12]), device.stream('float', [8, 1]), device.stream('float', [1])];
   const { found, kernel, value } = await followed('folds', device, async () => {
+    const scale = filled(device, [1], () => 1 / 3);
+    k.field.damp(scale, x, y);
     const squares = await k.energy(1 / 3, x, y);
     k.energy(1 / 3, x, y, one);
     k.total(y, rows);
@@ -120,7 +122,9 @@ async function folds(device) {
   const ofMap = Math.sqrt(sum2(less(Float64Array.from(value.y), exact)) / sum2(exact));
   expect('the other output of a fold, too', isClose(kernel('energy').outputs.find(({ name }) => name === 'y').points[0][1], ofMap, 1e-6), String(ofMap));
   expect('a reduce to a stream is', kernel('total').followed === 1 && kernel('total').total.largest < 1e-7 && value.rows.length === 8, JSON.stringify(kernel('total')));
-  expect('everything is right', found.verdicts[0].kind === 'fine' && found.notes.length === 0, JSON.stringify([found.verdicts, found.notes]));
+  expect('a stream for a value is named', found.notes.length === 1 && found.notes[0].startsWith("'a' of field::damp is a value in a stream"), JSON.stringify(found.notes));
+  expect('so is what a page is promised', found.results.some(({ name, kind }) => name === 'energy' && kind === 'value'), JSON.stringify(found.results));
+  expect('everything is right', found.verdicts[0].kind === 'fine' && found.followed === 4, JSON.stringify(found.verdicts));
 }
 
 async function views(device) {
@@ -243,6 +247,12 @@ async function choices(device) {
   expect('a second shadow is refused', error instanceof SkError && error.message.includes('stop() that first'), String(error));
   const mistake = await (async () => k.field.damp(1, x, device.stream('float', [3])))().then(() => null, (error) => error);
   expect('mistakes of the page stay its own', mistake instanceof SkError && mistake.kind === 'shape', String(mistake));
+  const gone = filled(device, [16], (i) => i);
+  gone.dispose();
+  const lost = await (async () => k.field.damp(1, gone, x))().then(() => null, (error) => error);
+  k.field.damp(1 / 3, x, x);
+  const after = await first.report();
+  expect('and are not those of the kernel', lost?.kind === 'lost' && after.followed === 1 && after.notes.length === 0, JSON.stringify([String(lost), after.notes]));
   first.stop();
 }
 

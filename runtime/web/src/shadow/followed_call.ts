@@ -56,10 +56,13 @@ export class FollowedCall {
   private readonly arguments: readonly unknown[];
   private readonly outputs: readonly { index: number; of: Elements | null }[];
   private form: Callable | null = null;
+  /** What has kept the reference from reading the inputs. */
+  private obstacle: unknown = null;
   private isMeasured = false;
   private reads: Read[] = [];
-  /** The device's inputs before the call, in doubles, and the streams of values. */
+  /** The device's inputs before the call, in doubles; and streams that stand for values. */
   private readonly inputs = new Map<AnyStream, AnyStream>();
+  private readonly values = new Map<AnyStream, AnyStream>();
   private readonly temporaries: AnyStream[] = [];
 
   constructor(private readonly follower: Follower, private readonly called: Called, options: ScanOptions & KernelOptions, given: readonly unknown[], private readonly over: GivenDomain | null) {
@@ -93,7 +96,7 @@ export class FollowedCall {
       if (this.isEmpty()) this.form = null;
       else this.prepareReads();
     } catch (error) {
-      this.giveUp(error);
+      this.obstacle = error; // perhaps a mistake of the page, which the device refuses, too
     }
   }
 
@@ -105,6 +108,7 @@ export class FollowedCall {
 
   /** What follows the device's call, which has returned `result`. */
   finish(result: unknown): void {
+    if (this.obstacle !== null) this.giveUp(this.obstacle);
     if (this.form === null) {
       this.loseOutputs();
       if (result instanceof Promise) result.then(() => this.loseOutputs(), () => undefined); // which has pushed by then
@@ -160,8 +164,9 @@ export class FollowedCall {
       const element = isValue ? stream.element : this.elementOf(index);
       const counterpart = isValue ? null : this.follower.counterpartOf(stream);
       counterpart?.taken(element);
-      if ((isValue || this.isMeasured) && !this.inputs.has(stream)) this.inputs.set(stream, this.temporary(widened(stream, element)));
-      this.reads.push({ index, isValue, name, of, counterpart, device: this.inputs.get(stream) ?? null });
+      const kept = isValue ? this.values : this.inputs;
+      if ((isValue || this.isMeasured) && !kept.has(stream)) kept.set(stream, this.temporary(widened(stream, element)));
+      this.reads.push({ index, isValue, name, of, counterpart, device: kept.get(stream) ?? null });
     });
     for (const { index, of } of this.outputs) {
       if (of !== null && of.size < viewOf(of).stream.size) this.follower.counterpartOf(viewOf(of).stream).taken(this.elementOf(index));
@@ -233,7 +238,7 @@ export class FollowedCall {
     });
     const bytes = this.outputs.reduce((sum, { of }) => sum + (of === null ? 0 : 3 * bytesOf(of)), 0);
     for (const { arrays } of written) arrays.catch(() => undefined); // which the comparison sees
-    const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, this.valuesGiven(), this.isToValues);
+    const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, this.valuesGiven(), values.length);
     this.follower.compareLater(bytes, () => recorder.record(written), () => this.end());
   }
 
@@ -256,8 +261,8 @@ export class FollowedCall {
 
   private giveUp(error: unknown): void {
     const why = error instanceof Error ? error.message : String(error);
-    if (this.follower.device.lost) return;
     this.form = null;
+    if (this.follower.device.lost) return;
     this.follower.givenUp.set(this.called.callable, why);
     this.follower.records.note(`${this.called.callable.name} is not followed: ${why}`);
   }

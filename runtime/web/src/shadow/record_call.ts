@@ -37,9 +37,10 @@ export class CallRecorder {
   /** What was known of the inputs when the call was made. */
   private inputErrors: readonly StreamErrors[] = [];
 
+  /** `promised`: how many values the call promises. */
   constructor(
     private readonly records: Records, private readonly number: number, private readonly kernel: number, private readonly reads: readonly ReadOfCall[],
-    private readonly values: readonly { name: string; element: Element; value: unknown }[], private readonly isToValues: boolean,
+    private readonly values: readonly { name: string; element: Element; value: unknown }[], private readonly promised: number,
   ) {}
 
   async record(written: readonly WrittenByCall[]): Promise<void> {
@@ -96,8 +97,7 @@ export class CallRecorder {
   private recordValue(name: string, errors: OutputErrors, after: StreamErrors): void {
     const { records } = this;
     const kernel = records.kernels[this.kernel]!;
-    const isOnly = kernel.outputs.length <= 1 && this.isToValues;
-    const result = records.result(isOnly ? kernel.name : `${name} of ${kernel.name}`, true);
+    const result = records.result(this.promised === 1 ? kernel.name : `${name} of ${kernel.name}`, true);
     ++result.reads;
     result.elements = 1;
     result.last = after.relative;
