@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# cmake -D IN=FOLDER -D OUT=FILE.hpp -P SkEmbedPage.cmake: the page of FOLDER/page.html as constants of C++, in one file: style sheets
-# and scripts that it links are put in the places of their links. `sk::shadow::page` has parts, since some compilers limit a literal.
+# cmake -D IN=FOLDER -D OUT=FILE -P SkEmbedPage.cmake: the page of FOLDER/page.html as constants, in one file: style sheets and scripts
+# that it links are put in the places of their links. FILE.hpp is C++, where `sk::shadow::pageParts` has parts, since some compilers
+# limit a literal; FILE.js is a module that exports `page`.
 file(READ "${IN}/page.html" page)
 string(REGEX MATCHALL "<link rel=\"stylesheet\" href=\"[a-z_.]+\">|<script src=\"[a-z_.]+\"></script>" links "${page}")
 foreach(link IN LISTS links)
@@ -15,6 +16,13 @@ foreach(link IN LISTS links)
 endforeach()
 if(NOT page MATCHES "/\\*REPORT\\*/null")
   message(FATAL_ERROR "${IN}/page.html has no place for the report: /*REPORT*/null")
+endif()
+if(OUT MATCHES "[.]js$")
+  string(REPLACE "\\" "\\\\" page "${page}")
+  string(REPLACE "`" "\\`" page "${page}")
+  string(REPLACE "\${" "\\\${" page "${page}")
+  file(WRITE "${OUT}" "// Generated from runtime/src/shadow/report. Edit the files there instead.\nexport const page = `${page}`;\n")
+  return()
 endif()
 # A literal ends at the first end of a line after 12,000 bytes, so that no character of UTF-8 is cut.
 set(parts "")

@@ -182,8 +182,9 @@ std::string boundsText(const Options& options, const ir::Module& module) {
                               : bounds::listing(kernels, options.bounds);
 }
 
-web::JsModule jsModuleOf(const ir::Module& module) {
-  return web::jsModule(module, emit::Program(module, {.fragment = true, .compute = false}), fileName(module));
+web::JsModule jsModuleOf(const Options& options, const ir::Module& module) {
+  return web::jsModule(module, emit::Program(module, {.fragment = true, .compute = false}), fileName(module),
+                       options.shadow);
 }
 
 /// An output file and its contents.
@@ -197,7 +198,7 @@ struct OutputFile {
 std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& module) {
   const std::string base = (fs::path(options.outputDirectory) / fileName(module)).string();
   if (options.emit == Emit::Js) {
-    web::JsModule made = jsModuleOf(module);
+    web::JsModule made = jsModuleOf(options, module);
     return {{base + ".js", std::move(made.script)}, {base + ".d.ts", std::move(made.types)}};
   }
   emit::Stub stub = stubOf(options, module);
@@ -263,7 +264,8 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   checkOutputs(*module, frontend.diagnostics());  // before any transform: it checks the code as written
   if (!frontend.diagnostics().hasErrors()) {
     TransformOptions transforms = transformOptions(options, job.output);
-    transforms.precisions = transforms.precisions || (options.emit == Emit::Js && wantsPrecisions(*module));
+    transforms.precisions =
+        transforms.precisions || options.shadow || (options.emit == Emit::Js && wantsPrecisions(*module));
     runTransforms(*module, frontend.diagnostics(), transforms);
     if (!frontend.diagnostics().hasErrors())
       checkSizes(*module, frontend.diagnostics());  // unrolled loops are larger
@@ -311,7 +313,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
       return stub.header + stub.source;
     }
     case Emit::Js: {
-      const web::JsModule made = jsModuleOf(module);
+      const web::JsModule made = jsModuleOf(options, module);
       return made.script + made.types;
     }
     case Emit::Llvm: return nativeText(options, module, native::Output::Llvm);

@@ -107,6 +107,8 @@ void addOutputOptions(CLI::App& app, Words& words) {
          "Precision that --emit prints: single (default), half, extended or double. Stubs have all of "
          "them; with 'single', only that one")
       ->check(CLI::IsMember({"single", "half", "extended", "double"}));
+  app.add_flag("--shadow", words.options.shadow,
+               "Add to modules for browsers what device.shadow() computes beside the kernels, in doubles");
   app.add_flag(
       "--library", words.options.library,
       "Add a list of all kernels and reduces to the stubs, for programs that load them (sk/library.hpp)");
@@ -239,6 +241,8 @@ std::string checkTogether(Words& words) {
   options.color = words.color == "always" || (words.color == "auto" && isatty(STDERR_FILENO));
   const bool printsNative = options.emit == Emit::Llvm || options.emit == Emit::Assembly;
   if (const std::string mistake = setBounds(words); !mistake.empty()) return mistake;
+  if (options.shadow && options.emit != Emit::Js)
+    return "--shadow adds to modules for browsers; write --emit=js, too, or leave it out";
   if (options.isolated && !options.includeDirectories.empty())
     return "--isolated reads no included file; leave out -I";
   if (printsNative && !options.nativeTarget)

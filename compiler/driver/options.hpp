@@ -42,6 +42,7 @@ struct Options {
   bool nativeTarget = true;  ///< compile native code
   native::Options native;  ///< machine and code generation
   bool quad = false;  ///< native code also computes in __float128
+  bool shadow = false;  ///< modules for browsers have what device.shadow() needs
   bool library = false;  ///< the stubs list their descriptors
   bool color = false;
   bool fixIts = false;  ///< also print fix-its for tools

@@ -26,6 +26,7 @@
 #include "web/ahead_programs.hpp"
 #include "web/js_names.hpp"
 #include "web/offered.hpp"
+#include "web/shadow_forms.hpp"
 #include "web/sum_variants.hpp"
 #include "web/typings.hpp"
 #include "web/used_functions.hpp"
@@ -57,8 +58,8 @@ using emit::nameOf;
 
 class ScriptWriter {
  public:
-  ScriptWriter(const ir::Module& module, const emit::Program& program, const JsNames& names)
-      : module_(module), program_(program), jsNames_(names) {}
+  ScriptWriter(const ir::Module& module, const emit::Program& program, const JsNames& names, bool withShadow)
+      : module_(module), program_(program), jsNames_(names), withShadow_(withShadow) {}
 
   std::string text(std::string_view fileName) {
     Json callables = Json::array();
@@ -88,6 +89,9 @@ class ScriptWriter {
   Json callable(const emit::Unit& unit) {
     Json json = callableAlone(unit);
     const ir::Kernel& kernel = module_.kernels[unit.id];
+    const bool isFollowed =
+        withShadow_ && !json.contains("whyNot") && !unit.isScan && !hasAppendOutputs(unit.kernel);
+    if (isFollowed) json["shadow"] = unit.reduction != nullptr ? shadowReduction(unit) : shadowKernel(unit);
     if (!kernel.bundles.empty() && !json.contains("whyNot")) json["bundles"] = bundlesOf(kernel);
     return json;
   }
@@ -204,6 +208,48 @@ class ScriptWriter {
       if (const std::string deep = whyNestsTooDeepInPairs(id); !deep.empty()) return {{"whyNot", deep}};
     }
     return kernelForm(*form, profileOf(fast), views);
+  }
+
+  /// What device.shadow() runs beside a kernel; null if it computes no floats, so that it is its own form.
+  Json shadowKernel(const emit::Unit& unit) {
+    const bool views = ir::isAhead(module_.kernels[unit.id].choices, ir::Ahead::Views);
+    return shadowKernel(unit.kernel, whyNestsTooDeepInPairs(unit.id), views);
+  }
+
+  Json shadowKernel(const Kernel& plain, std::string why, bool views) {
+    if (why.empty()) why = plain.whyNotWide;
+    if (!why.empty()) return {{"whyNot", why}};
+    if (plain.wide == nullptr) return {};
+    const ShadowKernel form(*plain.wide);
+    if (why = whyNotBeside(form); !why.empty()) return {{"whyNot", why}};
+    Json kernel = kernelOf(form.get());
+    kernel["packs"] = false;
+    kernel["programs"] = programsOf(
+        kernelPrograms(profileOf(false), form.get(), {.packed = false, .views = views}), {&form.get()});
+    return kernel;
+  }
+
+  /// The same of a reduce or a kernel with folded outputs. Its accumulators are doubles, and stay so.
+  Json shadowReduction(const emit::Unit& unit) {
+    const Reduction& plain = *unit.reduction;
+    std::string why = whyNestsTooDeepInPairs(unit.id);
+    if (why.empty()) why = plain.fold.whyNotWide;
+    if (!why.empty()) return {{"whyNot", why}};
+    if (plain.wide == nullptr) return {};
+    const Reduction& wide = plain.wide->reduction;
+    const ShadowKernel fold(wide.fold), combine(wide.combine);
+    Reduction form = wide;
+    form.fold = fold.get();
+    form.combine = combine.get();
+    if (why = whyTooManyPlanes(form, false); !why.empty()) return {{"whyNot", why}};
+    Json json = reduction(form, {.byIndex = true, .scans = false, .mayBeEmpty = false});
+    json["variants"] = Json::object();
+    if (plain.parts == nullptr) return json;
+    const Kernel& map = plain.parts->map;
+    json["map"] =
+        map.wide != nullptr ? shadowKernel(map, "", false) : kernelForm(map, profileOf(false), false);
+    json["mapOperands"] = plain.parts->mapOperands;
+    return json["map"].contains("whyNot") ? json["map"] : json;
   }
 
   Json kernelForm(const Kernel& whole, const sk::assemble::Profile& profile, bool views) {
@@ -530,6 +576,7 @@ class ScriptWriter {
   const ir::Module& module_;
   const emit::Program& program_;
   const JsNames& jsNames_;
+  const bool withShadow_;
   Json elements_ = Json::array();
   std::map<std::string, std::size_t> elementIndices_;  ///< by their texts
   std::vector<std::string> texts_;  ///< shared parts of programs, contents of template literals
@@ -543,9 +590,10 @@ class ScriptWriter {
 
 }  // namespace
 
-JsModule jsModule(const ir::Module& module, const emit::Program& program, std::string_view fileName) {
+JsModule jsModule(const ir::Module& module, const emit::Program& program, std::string_view fileName,
+                  bool withShadow) {
   const JsNames names(module);
-  return {.script = ScriptWriter(module, program, names).text(fileName),
+  return {.script = ScriptWriter(module, program, names, withShadow).text(fileName),
           .types = typings(module, program, names, fileName)};
 }
 

@@ -21,7 +21,8 @@ struct JsModule {
 };
 
 /// The module must have passed expand-selects, as for the profile webgl2. `fileName` is the .sk file's name without
-/// directories.
-JsModule jsModule(const ir::Module& module, const emit::Program& program, std::string_view fileName);
+/// directories. `withShadow`: it also has the programs that device.shadow() needs.
+JsModule jsModule(const ir::Module& module, const emit::Program& program, std::string_view fileName,
+                  bool withShadow);
 
 }  // namespace skc::web

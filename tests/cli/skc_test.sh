@@ -36,7 +36,7 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel --isolated -I -D -W -g -O --depfile --print-after --library --device --target-triple --levels \
+for option in -o --emit --target --profile --kernel --isolated -I -D -W -g -O --depfile --print-after --library --shadow --device --target-triple --levels \
   --lanes --quad --version; do
   prints " $option"
 done
@@ -96,6 +96,14 @@ fi
 run 0 -Iinclude -o fragment --target=fragment heat.sk
 grep -qF '.code = ' fragment/heat.sk.cpp && broken "--target=fragment writes native code"
 [[ ! -e fragment/heat.sk.o ]] || broken "--target=fragment writes an object"
+
+# What a shadow computes beside kernels is in modules that ask for it.
+run 0 --emit=js -Iinclude -o web heat.sk
+! grep -q '"shadow":' web/heat.sk.js || broken "a module has what nobody asked for"
+run 0 --emit=js --shadow --precision=single -Iinclude -o web heat.sk
+[[ $(grep -o '"shadow":{"name"' web/heat.sk.js | wc -l) == 2 ]] || broken "a kernel and a reduce lack what --shadow adds"
+run 1 --shadow -Iinclude heat.sk
+says '--shadow adds to modules for browsers; write --emit=js, too, or leave it out'
 
 # With --isolated, no other file is read, and none is found.
 echo 'the secret;' >secret.sk

@@ -35,6 +35,8 @@ def build(source, folder, built=None):
         return
     need()
     run("-p", os.path.join(source, "runtime/web"), "--outDir", folder)
+    page = ["-D", f"IN={source}/runtime/src/shadow/report", "-D", f"OUT={folder}/shadow/page.js"]
+    subprocess.run(["cmake", *page, "-P", f"{source}/cmake/SkEmbedPage.cmake"], check=True)
 
 
 def gzipped(source):
@@ -42,7 +44,7 @@ def gzipped(source):
     with tempfile.TemporaryDirectory() as folder:
         run("-p", os.path.join(source, "runtime/web"), "--outDir", folder, "--removeComments", "--declaration", "false")
         modules = b""
-        for name in sorted(glob.glob(f"{folder}/*.js")):
+        for name in sorted(glob.glob(f"{folder}/**/*.js", recursive=True)):
             with open(name, "rb") as module:
                 modules += module.read()
     return len(gzip.compress(modules))
@@ -57,19 +59,29 @@ uses = {
 
 
 def minified(modules, build):
-    """Bytes of the package as bundlers ship it, minified and gzipped, for each of `uses`; `modules` is what build() wrote. None where
-    npm has not fetched esbuild (--target playground_editor)."""
+    """Bytes of the package as bundlers ship it, minified and gzipped, for each of `uses`, and of what device.shadow() loads later;
+    `modules` is what build() wrote. None where npm has not fetched esbuild (--target playground_editor)."""
     esbuild = os.path.join(build, "runtime/web/editor/node_modules/.bin/esbuild")
     if not os.path.exists(esbuild):
         return None
+    sizes = {}
+    for use, names in uses.items():
+        with tempfile.TemporaryDirectory() as folder:
+            what = names if names == "*" else f"{{ {names} }}"
+            command = [esbuild, "--bundle", "--minify", "--format=esm", "--splitting", f"--outdir={folder}", f"--metafile={folder}/meta.json"]
+            subprocess.run(command, input=f"export {what} from './index.js';".encode(), cwd=modules, capture_output=True, check=True)
+            with open(f"{folder}/meta.json") as meta:
+                outputs = {os.path.basename(name): output for name, output in json.load(meta)["outputs"].items()}
+            # A module is loaded with the page unless an import() asks for it.
+            later = {os.path.basename(each["path"]) for output in outputs.values() for each in output["imports"] if each["kind"] == "dynamic-import"}
 
-    def size(names):
-        what = names if names == "*" else f"{{ {names} }}"
-        command = [esbuild, "--bundle", "--minify", "--format=esm"]
-        bundle = subprocess.run(command, input=f"export {what} from './index.js';".encode(), cwd=modules, capture_output=True, check=True)
-        return len(gzip.compress(bundle.stdout))
+            def size(names):
+                texts = [open(f"{folder}/{name}", "rb").read() for name in sorted(names)]
+                return len(gzip.compress(b"".join(texts)))
 
-    return {use: size(names) for use, names in uses.items()}
+            sizes[use] = size(outputs.keys() - later)
+            sizes["a shadow"] = size(name for name in later if name.startswith("shadow"))
+    return {use: sizes[use] for use in [*uses, "a shadow"]}
 
 
 def check_types(files, folder):

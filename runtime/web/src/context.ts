@@ -6,12 +6,14 @@ import type { HostArray } from './format.js';
 import type { Element, Parameter } from './generated.js';
 import { layoutOf, mayPack, type Layout, type Rect } from './layout.js';
 import { Memory, type Plane } from './memory.js';
+import type { Observer } from './observer.js';
 import { Program } from './program.js';
 import { Trace } from './trace.js';
 import { texelsIn, Transfers } from './transfers.js';
 
 export abstract class Context extends Memory {
   /** @internal */ tracer: Trace | null = null;
+  /** What sees the calls, reads and writes of the page. @internal */ observer: Observer | null = null;
   protected transfers: Transfers;
   private current: Program | null = null;
   private readonly programs = new Map<unknown, Map<string, Program>>();

@@ -9,6 +9,7 @@ import { drawStream, type DrawOptions } from './draw.js';
 import { builtInElement } from './elements.js';
 import { SkError } from './error.js';
 import type { StructElement } from './generated.js';
+import type { Shadow, ShadowOptions } from './shadow/shadow.js';
 import { Stream } from './stream.js';
 import { Trace } from './trace.js';
 import type { ElementType, ShapeOf } from './types.js';
@@ -100,6 +101,7 @@ export class Device extends Context {
    */
   draw(stream: Stream<any, number>, canvas: Canvas = this.canvas, options: DrawOptions = {}): void {
     this.check();
+    this.observer?.read(stream);
     drawStream(this, stream, canvas, options);
   }
 
@@ -107,6 +109,16 @@ export class Device extends Context {
   async compile(callables: readonly unknown[], progress?: (done: number) => void): Promise<void> {
     this.check();
     await compileAll(this, callables as readonly Compilable[], progress);
+  }
+
+  /**
+   * Follows the calls on this device: what kernels compute is compared with what they would in pairs of floats, about 47 bits, until
+   * stop(). Loads the module that does so. Throws SkError for options that are none, and if the device has a shadow already.
+   */
+  async shadow(options: ShadowOptions = {}): Promise<Shadow> {
+    const { Shadow } = await import('./shadow/shadow.js');
+    this.check();
+    return Shadow.of(this, options);
   }
 
   /** Frees everything that the device has made. The context goes, too, if that is the device's own. */

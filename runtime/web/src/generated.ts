@@ -99,6 +99,12 @@ export interface WithForms<Data> extends Dials {
   readonly forms?: Readonly<Record<string, Data | { readonly whyNot: string } | null>>;
 }
 
+/**
+ * The form whose streams hold doubles, which a shadow runs beside the plain one, or why there is none; null if that is the plain one
+ * itself, since it computes no floats. Absent where skc was not asked for it (--shadow).
+ */
+export type Beside<Data> = Data | { readonly whyNot: string } | null;
+
 export interface CallableKernel extends KernelData, WithForms<CallableKernel> {
   /** Whether it may write four elements of a packed texel. */
   readonly packs: boolean;
@@ -110,6 +116,7 @@ export interface CallableKernel extends KernelData, WithForms<CallableKernel> {
   /** Programs of the pyramid over counts, and the vertex program of points. */
   readonly sums?: readonly [ofCounts: number, ofNodes: number];
   readonly vertices?: number;
+  readonly shadow?: Beside<CallableKernel>;
 }
 
 /** A kernel that is split into passes: each runs over the kernel's domain, and hands on temporaries. */
@@ -159,6 +166,7 @@ export interface CallableReduction extends Reduction {
   /** Computes the other outputs of a kernel with folded outputs: for each parameter, the one of the whole kernel. */
   readonly map?: CallableKernel;
   readonly mapOperands?: readonly number[];
+  readonly shadow?: Beside<CallableReduction>;
 }
 
 /** A bundle among the arguments of a call: an object whose members are arguments for parameters of the kernel. */

@@ -8,6 +8,7 @@ import type { Features, FoldCaller, LoadedFile } from './features.js';
 import { Forms } from './forms.js';
 import { checkSchema, type Callable, type GeneratedFile, type Parameter, type WithBundles } from './generated.js';
 import { KernelCaller } from './kernel.js';
+import type { Called } from './observer.js';
 import { givenDomain, type GivenDomain } from './over.js';
 import type { Program } from './program.js';
 import type { KernelOptions, ScanOptions, Struct } from './types.js';
@@ -17,6 +18,8 @@ export type { Arithmetic, Canvas, DeviceInfo, DeviceOptions } from './abilities.
 export type { DrawOptions } from './draw.js';
 export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
+export type { Shadow, ShadowOptions } from './shadow/shadow.js';
+export type { ShadowReport } from './shadow/report.js';
 export { Stream, stretch, stride, type Fitted, type View } from './stream.js';
 export type {
   ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Extents, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Over, Pushed, Reduce, Scan, ScanOptions,
@@ -42,11 +45,14 @@ interface Exported {
   over?(...given: readonly unknown[]): Exported;
 }
 
-/** Makes a call, which the tracer of the streams' device sees, or of the given one. */
-function traced<T>(name: string, given: readonly unknown[], over: GivenDomain | null, call: () => T): T {
+/** Makes a call, which the tracer and the observer of the streams' device see, or of the given one. */
+function seen<T>(called: Called, options: ScanOptions & KernelOptions, given: readonly unknown[], over: GivenDomain | null, call: () => T): T {
   for (const argument of [...given, over]) {
-    const tracer = (argument as { device?: Device } | null | undefined)?.device?.tracer;
-    if (tracer) return tracer.call(name, call);
+    const device = (argument as { device?: Device } | null | undefined)?.device;
+    if (!device?.tracer && !device?.observer) continue;
+    const { tracer, observer } = device;
+    const traced = tracer ? () => tracer.call(called.callable.name, call) : call;
+    return observer ? observer.call(called, options, given, over, traced) : traced();
   }
   return call();
 }
@@ -58,26 +64,28 @@ interface Caller {
   startPrograms(device: Device): Program[];
 }
 
-function reduceFunction(name: string, caller: FoldCaller, options: ScanOptions, over: GivenDomain | null): Exported {
-  const run = (...given: unknown[]) => traced(name, given, over, () => caller.call(given, options, over));
+function reduceFunction(called: Called, caller: FoldCaller, options: ScanOptions, over: GivenDomain | null): Exported {
+  const { name } = called.callable;
+  const run = (...given: unknown[]) => seen(called, options, given, over, () => caller.call(given, options, over));
   return Object.assign(run, {
     repeat: () => false,
-    with: (more: ScanOptions) => reduceFunction(name, caller, { ...options, ...more }, over),
-    over: (...given: readonly unknown[]) => reduceFunction(name, caller, options, givenDomain(name, given)),
+    with: (more: ScanOptions) => reduceFunction(called, caller, { ...options, ...more }, over),
+    over: (...given: readonly unknown[]) => reduceFunction(called, caller, options, givenDomain(name, given)),
     check: (given: readonly unknown[]) => caller.check(given),
     startPrograms: (device: Device) => caller.startPrograms(device, options),
   });
 }
 
-function kernelFunction(name: string, callers: { of(options: KernelOptions): Caller }, options: KernelOptions, over: GivenDomain | null): Exported {
+function kernelFunction(called: Called, callers: { of(options: KernelOptions): Caller }, options: KernelOptions, over: GivenDomain | null): Exported {
+  const { name } = called.callable;
   let chosen: Caller | null = null; // when it is called: other overloads may have forms that this one lacks
   const caller = () => (chosen ??= callers.of(options));
   const repeat = (given: readonly unknown[]) => over === null && chosen !== null && chosen.repeat(given);
-  const run = (...given: unknown[]) => (repeat(given) ? undefined : traced(name, given, over, () => caller().call(given, over)));
+  const run = (...given: unknown[]) => (repeat(given) ? undefined : seen(called, options, given, over, () => caller().call(given, over)));
   return Object.assign(run, {
     repeat,
-    with: (more: object) => kernelFunction(name, callers, { ...options, ...more }, over),
-    over: (...given: readonly unknown[]) => kernelFunction(name, callers, options, givenDomain(name, given)),
+    with: (more: object) => kernelFunction(called, callers, { ...options, ...more }, over),
+    over: (...given: readonly unknown[]) => kernelFunction(called, callers, options, givenDomain(name, given)),
     check: (given: readonly unknown[]) => caller().check(given),
     startPrograms: (device: Device) => caller().startPrograms(device),
   });
@@ -88,8 +96,8 @@ function functionOf(callable: Callable, file: LoadedFile): Exported {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
     return Object.assign(() => refuse(), { repeat: () => false, with: refuse, over: refuse, check: refuse, startPrograms: refuse });
   }
-  if ('fold' in callable) return withBundles(callable, callable.fold.parameters, reduceFunction(callable.name, file.features.folds!(callable, file), {}, null));
-  return withBundles(callable, callable.parameters, kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}, null));
+  if ('fold' in callable) return withBundles(callable, callable.fold.parameters, reduceFunction({ callable, file }, file.features.folds!(callable, file), {}, null));
+  return withBundles(callable, callable.parameters, kernelFunction({ callable, file }, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}, null));
 }
 
 /** A function whose arguments may be bundles, from one that takes their members. */

@@ -76,7 +76,7 @@ export class Repeat {
   private isAlike(given: readonly unknown[]): boolean {
     const { device, omitted, slots } = this;
     const { outputs } = this.choices;
-    if (given.length !== this.kernel.parameters.length || device.lost || device.tracer !== null) return false;
+    if (given.length !== this.kernel.parameters.length || device.lost || device.tracer !== null || device.observer !== null) return false;
     for (const { index, element, layout, isWritten } of slots) {
       const stream = given[index];
       const isLike = stream instanceof Stream && stream.layout === layout && stream.device === device && stream.element === element && stream.isReady(!isWritten);

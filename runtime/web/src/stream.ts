@@ -163,6 +163,7 @@ export class Stream<T extends ElementType, R extends number> {
     this.check('the stream', false);
     this.device.begin();
     this.upload(elements);
+    this.device.observer?.written(this);
     if (!this.device.keepsCopies) return;
     this.copy = { elements: cloned(elements) as ArrayOf<T>, shape: this.shape as readonly number[], number: ++this.requests };
   }
@@ -174,7 +175,7 @@ export class Stream<T extends ElementType, R extends number> {
   async keep(): Promise<void> {
     const number = ++this.requests;
     const shape = this.shape as readonly number[];
-    const elements = await this.read();
+    const elements = await this.download();
     if (number >= (this.copy?.number ?? 0)) this.copy = { elements, shape, number }; // of two copies, the one asked for later stays
   }
 
@@ -202,6 +203,13 @@ export class Stream<T extends ElementType, R extends number> {
 
   /** Copies the elements to the host. Never blocks: they are those that all calls before have left. */
   async read(): Promise<ArrayOf<T>> {
+    this.check('the stream');
+    this.device.observer?.read(this);
+    return this.download();
+  }
+
+  /** What read() does, but no observer sees it. @internal */
+  async download(): Promise<ArrayOf<T>> {
     this.check('the stream');
     this.device.begin();
     const { size } = this;
@@ -241,6 +249,7 @@ export class Stream<T extends ElementType, R extends number> {
   dispose(): void {
     if (this.isDisposed) return;
     this.isDisposed = true;
+    this.device.observer?.disposed(this);
     if (!this.device.lost) this.device.release(this.planes);
     this.planes = [];
     this.copy = null;
@@ -341,13 +350,15 @@ export class View<T extends ElementType, R extends number> {
     stream.own();
     if (this.size > 0) copyRegion(this.device, sizes(this), regionOf(whole), regionOf(this));
     whole.dispose();
+    this.device.observer?.written(this);
   }
 
   /** Copies the elements to the host, as Stream.read() does. */
   read(): Promise<ArrayOf<T>> {
     this.check('the stream');
+    this.device.observer?.read(this);
     const whole = this.copied();
-    const arrays = whole.read();
+    const arrays = whole.download();
     whole.dispose();
     return arrays;
   }
@@ -529,6 +540,7 @@ export function fill(of: Elements, value: unknown): void {
     copyRegion(stream.device, xFirst(shape as readonly number[]), source, regionOf(of));
   }
   one.dispose();
+  stream.device.observer?.written(of);
 }
 
 /** Copies the elements to a stream or view of the same shape. The elements of both may overlap. */
@@ -549,6 +561,7 @@ export function copy(of: Elements, target: Elements): void {
     if (b.layout !== a.layout || b.isHeld()) b.exchange(b.newPlanes(a.layout), a.layout);
     a.planes.forEach((plane, i) => a.device.copyTexels(plane, b.planes[i]!, a.layout.draws));
     b.isGone = false;
+    a.device.observer?.copied(of, target);
     return;
   }
   const source = a === b ? from.copied() : of;
@@ -557,4 +570,5 @@ export function copy(of: Elements, target: Elements): void {
   b.own();
   copyRegion(a.device, xFirst(from.shape as readonly number[]), regionOf(source), regionOf(target));
   if (source !== of) (source as Stream<any, number>).dispose();
+  a.device.observer?.copied(of, target);
 }

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+//
+// Records how far the outputs of a call are from the reference: errors, whose they are, exceptional values, decisions
+// (runtime/src/shadow/call_record.cpp).
+import { numbersOf } from '../elements.js';
+import type { Element, Parameter } from '../generated.js';
+import { viewOf } from '../stream.js';
+import { componentNames, indexOf, inputNumber, isReal, readColumns, readElement, scalarsOf, type AnyStream, type Elements } from './columns.js';
+import { noErrors, type Counterpart, type StreamErrors } from './counterpart.js';
+import { compare, isJump, type Columns, type Found, type OutputErrors } from './errors.js';
+import type { ElementRecord, ExceptionRecord, Records, Value } from './records.js';
+import { Shares, writtenByHost } from './shares.js';
+
+export interface ReadOfCall {
+  readonly name: string;
+  readonly of: Elements;
+  /** Null if a stream holds a value, which the reference takes from the device. */
+  readonly counterpart: Counterpart | null;
+  /** The whole stream of the elements before the call, in doubles. */
+  readonly device: AnyStream | null;
+}
+
+export interface WrittenByCall {
+  readonly parameter: Parameter;
+  readonly element: Element;
+  /** Null if it is a value. */
+  readonly of: Elements | null;
+  readonly counterpart: Counterpart | null;
+  /** The device's elements, and those of the reference with the device's and with its own inputs. */
+  readonly arrays: Promise<readonly [Columns, Columns, Columns]>;
+}
+
+const mostRecords = 256;
+const longestPath = 32;
+
+export class CallRecorder {
+  /** What was known of the inputs when the call was made. */
+  private inputErrors: readonly StreamErrors[] = [];
+
+  /** `promised`: how many values the call promises. */
+  constructor(
+    private readonly records: Records, private readonly number: number, private readonly kernel: number, private readonly reads: readonly ReadOfCall[],
+    private readonly values: readonly { name: string; element: Element; value: unknown }[], private readonly promised: number,
+  ) {}
+
+  async record(written: readonly WrittenByCall[]): Promise<void> {
+    this.inputErrors = this.reads.map(({ counterpart }) => counterpart?.errors ?? noErrors());
+    const record = this.records.kernels[this.kernel]!;
+    let amplification = 0;
+    for (const each of written) {
+      const arrays = await each.arrays;
+      const start = performance.now();
+      const errors = compare(scalarsOf(each.element).map(isReal), ...arrays);
+      this.records.comparisonSeconds += (performance.now() - start) / 1000;
+      amplification = Math.max(amplification, this.amplificationOf(errors));
+      await this.recordOutput(each, errors, arrays);
+    }
+    if (amplification > 0) record.amplification.add(amplification);
+    ++record.followed;
+    ++this.records.followed;
+  }
+
+  private amplificationOf(errors: OutputErrors): number {
+    const inputs = Math.max(0, ...this.inputErrors.map(({ relative }) => relative));
+    return errors.reals > 0 && inputs > 0 && Number.isFinite(inputs) ? errors.relativeInherited() / inputs : 0;
+  }
+
+  private async recordOutput(written: WrittenByCall, errors: OutputErrors, arrays: readonly [Columns, Columns, Columns]): Promise<void> {
+    const { records, number } = this;
+    const record = records.kernels[this.kernel]!;
+    const { name } = written.parameter;
+    const after = this.errorsAfter(written, errors);
+    const output = record.output(name, written.element.name);
+    if (errors.reals > 0) {
+      const point = { call: number, own: errors.relativeOwn(), inherited: errors.relativeInherited(), total: errors.relativeTotal(), absolute: Math.sqrt(errors.total2 / errors.reals) };
+      record.own.add(point.own);
+      record.inherited.add(point.inherited);
+      record.total.add(point.total);
+      output.points.add(point);
+      const worst = errors.own.error / (errors.scale() || 1);
+      if (errors.own.element >= 0 && worst > record.worstError) {
+        record.worstError = worst;
+        record.worst = await this.elementOf(written, errors.own.element, errors.own.component, arrays);
+      }
+    }
+    if (written.counterpart !== null) {
+      written.counterpart.errors = after;
+      written.counterpart.record.points.add({ call: number, own: 0, inherited: 0, total: after.relative, absolute: 0 });
+    }
+    await this.recordExceptions(written, 'nan', errors.nans, errors.newNans, arrays);
+    await this.recordExceptions(written, 'infinity', errors.infinities, errors.newInfinities, arrays);
+    await this.recordDecisions(written, errors, arrays);
+    if (written.of === null) this.recordValue(name, errors, after);
+  }
+
+  /** A value that a reduce has promised is read by that. */
+  private recordValue(name: string, errors: OutputErrors, after: StreamErrors): void {
+    const { records } = this;
+    const kernel = records.kernels[this.kernel]!;
+    const result = records.result(this.promised === 1 ? kernel.name : `${name} of ${kernel.name}`, true);
+    ++result.reads;
+    result.elements = 1;
+    result.last = after.relative;
+    result.largest = Math.max(result.largest, after.relative);
+    result.differs += errors.decisions.count;
+    result.shares = after.shares;
+  }
+
+  /** What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had. */
+  private errorsAfter(written: WrittenByCall, errors: OutputErrors): StreamErrors {
+    let own = errors.ownShare();
+    let relative = errors.relativeTotal();
+    if (errors.relativeIntegers() > relative) {
+      relative = errors.relativeIntegers();
+      own = Math.min(1, errors.ownDecisions.count / errors.decisions.count);
+    }
+    let shares = relative > 0 ? this.sharesOf(own) : new Shares();
+    let [hasNan, hasInfinity] = [errors.nans.count > 0, errors.infinities.count > 0];
+    const whole = written.of === null ? 1 : viewOf(written.of).stream.size;
+    if (written.of !== null && written.of.size < whole) { // other elements have the errors that they had
+      const before = written.counterpart!.errors;
+      const part = written.of.size / whole;
+      const [here, there] = [relative ** 2 * part, before.relative ** 2 * (1 - part)];
+      const both = new Shares();
+      both.addAll(shares, here);
+      both.addAll(before.shares, there);
+      shares = both;
+      relative = Math.sqrt(here + there);
+      hasNan ||= before.hasNan;
+      hasInfinity ||= before.hasInfinity;
+    }
+    shares.normalize();
+    return { relative, shares, hasNan, hasInfinity, exception: -1 };
+  }
+
+  private sharesOf(own: number): Shares {
+    const shares = new Shares();
+    shares.add(this.kernel, own);
+    const inputs = this.inputErrors.reduce((sum, { relative }) => sum + relative, 0);
+    for (const { relative, shares: before } of this.inputErrors) {
+      if (inputs > 0) shares.addAll(before, ((1 - own) * relative) / inputs);
+    }
+    const missing = 1 - shares.sum();
+    if (missing > 1e-6 && own < 1 - 1e-6) shares.add(writtenByHost, missing);
+    return shares;
+  }
+
+  private async recordExceptions(written: WrittenByCall, kind: ExceptionRecord['kind'], all: Found, added: Found, arrays: readonly [Columns, Columns, Columns]): Promise<void> {
+    if (all.count === 0) return;
+    const { records, kernel, number } = this;
+    const record = records.kernels[kernel]!;
+    const output = written.parameter.name;
+    const isNew = added.count > 0;
+    if (kind === 'nan') record.nans += added.count;
+    else record.infinities += added.count;
+    const follow = (exception: number) => {
+      if (written.counterpart !== null) written.counterpart.errors = { ...written.counterpart.errors, exception };
+    };
+    for (const { exception } of isNew ? [] : this.inputErrors) {
+      if (exception < 0) continue;
+      const { path } = records.exceptions[exception]!;
+      const isKnown = path.some((step) => step.kernel === kernel && step.output === output);
+      if (!isKnown && path.length < longestPath) path.push({ call: number, kernel, output, elements: all.count });
+      follow(exception);
+    }
+    if (!isNew && this.inputErrors.some(({ hasNan, hasInfinity }) => (kind === 'nan' ? hasNan : hasInfinity))) return;
+    const isKnown = records.exceptions.some((each) => each.kernel === kernel && each.kind === kind && each.isInReference === !isNew);
+    if (isKnown || records.exceptions.length >= mostRecords || (!isNew && (await this.isRead(kind)))) return;
+    const shown = isNew ? added : all;
+    const first = await this.elementOf(written, shown.first, shown.component, arrays);
+    follow(records.exceptions.push({ kind, kernel, elements: shown.count, isInReference: !isNew, first, path: [] }) - 1);
+  }
+
+  /** Whether the call has read such a value, which the page may have written. */
+  private async isRead(kind: ExceptionRecord['kind']): Promise<boolean> {
+    const isOne = (x: number) => (kind === 'nan' ? Number.isNaN(x) : Math.abs(x) === Infinity);
+    for (const { device } of this.reads) {
+      if (device !== null && (await readColumns(device)).some((column) => column.some(isOne))) return true;
+    }
+    return false;
+  }
+
+  private async recordDecisions(written: WrittenByCall, errors: OutputErrors, arrays: readonly [Columns, Columns, Columns]): Promise<void> {
+    const { records, kernel } = this;
+    const add = async (elements: number, first: number, component: number, isInherited: boolean) => {
+      records.kernels[kernel]!.decisions += elements;
+      const isKnown = records.decisions.some((each) => each.kernel === kernel && each.isInherited === isInherited);
+      if (isKnown || records.decisions.length >= mostRecords) return;
+      const element = await this.elementOf(written, first, component, arrays);
+      // With the same inputs, the reference decides as the device does.
+      const reference = isInherited ? { ...element.reference, value: arrays[2][component]![first]! } : element.reference;
+      records.decisions.push({ kernel, elements, isInherited, first: { ...element, reference } });
+    };
+    const { ownDecisions: own, decisions } = errors;
+    if (own.count > 0) await add(own.count, own.first, own.component, false);
+    else if (decisions.count > 0) await add(decisions.count, decisions.first, decisions.component, true);
+    const { element, component } = errors.own;
+    if (element >= 0 && isJump(errors, arrays[1][component]![element]!)) await add(1, element, component, false);
+  }
+
+  private async elementOf(written: WrittenByCall, number: number, component: number, [device, own]: readonly [Columns, Columns, Columns]): Promise<ElementRecord> {
+    const { element, of, parameter } = written;
+    const scalars = scalarsOf(element);
+    const value = (columns: Columns): Value => ({ value: columns[component]![number]!, isReal: isReal(scalars[component]!) });
+    const inputs: (Value & { readonly parameter: string })[] = this.values.flatMap((given) => {
+      const names = componentNames(given.element);
+      const areReal = scalarsOf(given.element).map(isReal);
+      return numbersOf(given.element, given.value).map((x, c) => ({ parameter: given.name + names[c]!, value: areReal[c] ? Math.fround(Number(x)) : Number(x), isReal: areReal[c]! }));
+    });
+    for (const read of of === null ? [] : this.reads) {
+      const at = read.device === null ? -1 : inputNumber(read.of, of!.shape as readonly number[], number);
+      if (at < 0) continue;
+      const page = viewOf(read.of).stream.element;
+      const names = componentNames(page);
+      const areReal = scalarsOf(page).map(isReal);
+      (await readElement(read.device!, at)).forEach((x, c) => inputs.push({ parameter: read.name + names[c]!, value: x, isReal: areReal[c]! }));
+    }
+    const index = of === null ? [] : indexOf(of, number);
+    return { call: this.number, output: parameter.name + componentNames(element)[component]!, index, device: value(device), reference: value(own), inputs };
+  }
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+//
+// What a shadow has found out about a page, before it is a report: runtime/src/shadow/report.hpp. Errors are relative to the root mean
+// square of the reference's components, unless said otherwise.
+import { Series, Spread } from './series.js';
+import { Shares, writtenByHost } from './shares.js';
+
+/** A number of the report. */
+export interface Value {
+  readonly value: number;
+  readonly isReal: boolean;
+}
+
+/** An element of an output, and what it was computed from. */
+export interface ElementRecord {
+  readonly call: number;
+  readonly output: string;
+  /** In the stream, rows first. */
+  readonly index: readonly number[];
+  readonly device: Value;
+  /** The reference computes with the device's inputs. */
+  readonly reference: Value;
+  readonly inputs: readonly (Value & { readonly parameter: string })[];
+}
+
+export interface OutputRecord {
+  readonly name: string;
+  readonly type: string;
+  readonly points: Series;
+}
+
+export class KernelRecord {
+  calls = 0;
+  followed = 0;
+  seconds = 0;
+  readonly own = new Spread();
+  readonly inherited = new Spread();
+  readonly total = new Spread();
+  readonly amplification = new Spread();
+  worst: ElementRecord | null = null;
+  /** Relative to the scale of its output. */
+  worstError = 0;
+  nans = 0;
+  infinities = 0;
+  decisions = 0;
+  /** The options of its calls that are not the default: "precision half". */
+  choices = '';
+  readonly outputs: OutputRecord[] = [];
+
+  constructor(readonly name: string) {}
+
+  output(name: string, type: string): OutputRecord {
+    let found = this.outputs.find((output) => output.name === name);
+    if (found === undefined) this.outputs.push((found = { name, type, points: new Series() }));
+    return found;
+  }
+}
+
+export interface StreamRecord {
+  name: string;
+  readonly type: string;
+  /** Kernels that push change it. */
+  shape: readonly number[];
+  resyncs: number;
+  readonly points: Series;
+}
+
+/** What the page read. */
+export interface ResultRecord {
+  readonly name: string;
+  /** Of a reduce. */
+  readonly isValue: boolean;
+  reads: number;
+  elements: number;
+  largest: number;
+  last: number;
+  differs: number;
+  shares: Shares;
+}
+
+export interface ExceptionRecord {
+  readonly kind: 'nan' | 'infinity';
+  readonly kernel: number;
+  readonly elements: number;
+  /** The reference computes it from the same inputs, too. */
+  readonly isInReference: boolean;
+  readonly first: ElementRecord;
+  readonly path: { readonly call: number; readonly kernel: number; readonly output: string; readonly elements: number }[];
+}
+
+export interface DecisionRecord {
+  readonly kernel: number;
+  readonly elements: number;
+  readonly isInherited: boolean;
+  readonly first: ElementRecord;
+}
+
+const mostNotes = 100;
+
+export class Records {
+  calls = 0;
+  followed = 0;
+  deviceSeconds = 0;
+  referenceSeconds = 0;
+  comparisonSeconds = 0;
+  readonly kernels: KernelRecord[] = [];
+  readonly streams: StreamRecord[] = [];
+  readonly results: ResultRecord[] = [];
+  readonly exceptions: ExceptionRecord[] = [];
+  readonly decisions: DecisionRecord[] = [];
+  readonly notes: string[] = [];
+
+  /** The number of a kernel, whose record exists then. */
+  kernel(name: string): number {
+    const found = this.kernels.findIndex((kernel) => kernel.name === name);
+    return found >= 0 ? found : this.kernels.push(new KernelRecord(name)) - 1;
+  }
+
+  nameOf(kernel: number): string {
+    return kernel === writtenByHost ? '(written by the page)' : this.kernels[kernel]!.name;
+  }
+
+  result(name: string, isValue: boolean): ResultRecord {
+    let found = this.results.find((result) => result.name === name && result.isValue === isValue);
+    if (found === undefined) {
+      this.results.push((found = { name, isValue, reads: 0, elements: 0, largest: 0, last: 0, differs: 0, shares: new Shares() }));
+    }
+    return found;
+  }
+
+  /** Adds a note once. */
+  note(text: string): void {
+    if (this.notes.length >= mostNotes || this.notes.includes(text)) return;
+    this.notes.push(this.notes.length + 1 === mostNotes ? 'further notes are left out' : text);
+  }
+}

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+//
+// device.shadow(): pages whose faults are known, and what the shadow says of them. Programs are replayed in JavaScript's doubles.
+import { Device, SkError, stretch } from 'streamkernel';
+import * as k from './beside.sk.js';
+import * as plain from './without.sk.js';
+
+const report = { mistakes: [], checks: 0, reports: {} };
+function expect(what, holds, found = '') {
+  ++report.checks;
+  if (!holds) report.mistakes.push(`${what}: ${found}`);
+}
+const isClose = (a, b, bound) => Math.abs(a - b) <= bound * Math.abs(b);
+const sum2 = (array) => array.reduce((sum, x) => sum + x * x, 0);
+const less = (a, b) => a.map((x, i) => x - b[i]);
+
+function filled(device, shape, of) {
+  const stream = device.stream('float', shape);
+  stream.write(Float32Array.from({ length: stream.size }, (_, i) => of(i)));
+  return stream;
+}
+
+/** What a page does under a shadow. */
+async function followed(name, device, run, options = {}) {
+  const shadow = await device.shadow(options);
+  try {
+    const value = await run(shadow);
+    const found = await shadow.report();
+    report.reports[name] = found;
+    return { found, shadow, value, kernel: (kernel) => found.kernels.find((each) => each.name === kernel) };
+  } finally {
+    shadow.stop();
+  }
+}
+
+// ---- blame ----------------------------------------------------------------------------------------
+
+const side = 32;
+const size = side * side;
+const start = Float32Array.from({ length: size }, (_, i) => 1e4 * (1 + Math.sin(i) ** 2));
+
+/** Results that do not depend on the shadow, and the elements that the bad kernel reads. */
+async function cancels(device, shadow, readsWithin) {
+  const [u, v, w] = [1, 2, 3].map(() => device.stream('float', [side, side]));
+  shadow?.name(w, 'w');
+  u.write(start);
+  for (let i = 0; i < 5; ++i) k.field.diffuse(0.2, u, u);
+  const within = readsWithin ? await u.read() : null;
+  k.field.cancel(u, v);
+  const cancelled = readsWithin ? await v.read() : null;
+  k.field.damp(0.5, v, w);
+  const sum = await k.total(w);
+  const result = await w.read();
+  for (const stream of [u, v, w]) stream.dispose();
+  return { within, cancelled, sum, result };
+}
+
+function diffusedInDoubles() {
+  let u = Float64Array.from(start);
+  const c = Math.fround(0.2);
+  for (let step = 0; step < 5; ++step) {
+    const at = (x, y) => u[((y + side) % side) * side + ((x + side) % side)];
+    u = u.map((here, i) => {
+      const [x, y] = [i % side, Math.floor(i / side)];
+      return here + c * (at(x + 1, y) + at(x - 1, y) + at(x, y + 1) + at(x, y - 1) - 4 * here);
+    });
+  }
+  return u;
+}
+
+const cancelInDoubles = (x) => Math.sqrt(1 + x) - Math.sqrt(x);
+
+async function blame(device) {
+  const without = await cancels(device, null, true);
+  const { found, kernel, value, shadow } = await followed('blame', device, (shadow) => cancels(device, shadow, false));
+  const bits = (array) => new Uint32Array(array.buffer).join();
+  expect('results have the same bits', bits(value.result) === bits(without.result) && value.sum === without.sum, `${value.sum} ${without.sum}`);
+  expect('the first verdict names the bad kernel', found.verdicts[0]?.kernel === 'field::cancel' && found.verdicts[0].kind === 'error', JSON.stringify(found.verdicts));
+  const reference = diffusedInDoubles().map(cancelInDoubles);
+  const own = Float64Array.from(without.within).map(cancelInDoubles);
+  const replayed = Math.sqrt(sum2(less(Float64Array.from(without.cancelled), own)) / sum2(reference));
+  const inherited = Math.sqrt(sum2(less(own, reference)) / sum2(reference));
+  expect('the own error is that of a replay', isClose(kernel('field::cancel').own.largest, replayed, 1e-6), `${kernel('field::cancel').own.largest}, not ${replayed}`);
+  expect('so is what it inherited', isClose(kernel('field::cancel').inherited.largest, inherited, 1e-2), `${kernel('field::cancel').inherited.largest}, not ${inherited}`);
+  expect('the bad kernel has nearly all of the share', kernel('field::cancel').share > 0.99 && kernel('field::diffuse').share < 0.01, String(kernel('field::cancel').share));
+  expect('a kernel that doubles would not make better adds nothing', kernel('field::damp').own.largest < 1e-7 && kernel('field::damp').inherited.largest > 1e-4);
+  expect('amplification is that of the formula', Math.abs(kernel('field::cancel').amplification.largest - 0.5) < 0.05, JSON.stringify(kernel('field::cancel').amplification));
+  const { worst } = kernel('field::cancel');
+  const input = Float64Array.of(without.within[worst.element[0] * side + worst.element[1]])[0];
+  expect('the worst element has its input', worst.inputs[0].parameter === 'x' && worst.inputs[0].value === input, JSON.stringify(worst));
+  expect('and its values', worst.device.value === without.cancelled[worst.element[0] * side + worst.element[1]] && isClose(worst.reference.value, cancelInDoubles(input), 1e-8), JSON.stringify(worst));
+  const total = Math.sqrt(sum2(less(Float64Array.from(without.result), reference.map((x) => 0.5 * x))) / sum2(reference.map((x) => 0.5 * x)));
+  const result = found.results.find(({ name }) => name === 'w');
+  expect('a result has the error of a replay', isClose(result?.error.largest ?? 0, total, 1e-6), JSON.stringify(result));
+  expect('a value, too', found.results.some(({ name, kind, error }) => name === 'total' && kind === 'value' && error.largest > 1e-6));
+  expect('all calls are followed', found.calls === 8 && found.followed === 8 && found.notes.length === 0, JSON.stringify(found.notes));
+  const table = await shadow.table();
+  expect('the table begins with the verdict', table.startsWith(found.verdicts[0].text) && /field::cancel +1 /.test(table), table);
+  const html = await shadow.html();
+  report.html = html;
+  expect('the page has the report', html.startsWith('<!DOCTYPE html>') && html.includes('"field::cancel"') && !html.includes('/*REPORT*/null;'));
+  expect('the page is not followed after stop()', (await cancels(device, null, false)).sum === without.sum && (await shadow.report()).calls === 8);
+}
+
+// ---- kinds of calls -------------------------------------------------------------------------------
+
+async function folds(device) {
+  const x = filled(device, [8, 12], (i) => 1 + i / 7);
+  const [y, rows, one] = [device.stream('float', [8, 12]), device.stream('float', [8, 1]), device.stream('float', [1])];
+  const { found, kernel, value } = await followed('folds', device, async () => {
+    const scale = filled(device, [1], () => 1 / 3);
+    k.field.damp(scale, x, y);
+    const squares = await k.energy(1 / 3, x, y);
+    k.energy(1 / 3, x, y, one);
+    k.total(y, rows);
+    return { squares, y: await y.read(), rows: await rows.read(), one: await one.read() };
+  });
+  const third = Math.fround(1 / 3);
+  const exact = Float64Array.from({ length: 96 }, (_, i) => third * Math.fround(1 + i / 7));
+  const own = Math.abs(value.squares - sum2(exact)) / sum2(exact);
+  expect('a folded output is compared', Math.abs(kernel('energy').outputs.find(({ name }) => name === 'squares').points[0][1] - own) < 1e-12, `${JSON.stringify(kernel('energy').outputs)}, not ${own}`);
+  const ofMap = Math.sqrt(sum2(less(Float64Array.from(value.y), exact)) / sum2(exact));
+  expect('the other output of a fold, too', isClose(kernel('energy').outputs.find(({ name }) => name === 'y').points[0][1], ofMap, 1e-6), String(ofMap));
+  expect('a reduce to a stream is', kernel('total').followed === 1 && kernel('total').total.largest < 1e-7 && value.rows.length === 8, JSON.stringify(kernel('total')));
+  expect('a stream for a value is named', found.notes.length === 1 && found.notes[0].startsWith("'a' of field::damp is a value in a stream"), JSON.stringify(found.notes));
+  expect('so is what a page is promised', found.results.some(({ name, kind }) => name === 'energy' && kind === 'value'), JSON.stringify(found.results));
+  expect('everything is right', found.verdicts[0].kind === 'fine' && found.followed === 4, JSON.stringify(found.verdicts));
+}
+
+async function views(device) {
+  const [x, y] = [filled(device, [8, 8], (i) => i / 3), filled(device, [1, 8], (i) => 1000 + i)];
+  const [r, s] = [filled(device, [8, 8], () => 7), device.stream('float', [8, 8])];
+  const small = filled(device, [4, 4], (i) => i / 3);
+  const { found, value } = await followed('views', device, async () => {
+    k.add(x.domain([2, 2], [6, 6]), x.domain([0, 0], [4, 4]), r.domain([4, 4], [8, 8]));
+    k.add(x, y, s);
+    k.add(stretch(small), s, s);
+    r.copyTo(x);
+    r.domain([0, 0], [1, 8]).fill(3);
+    r.domain([1, 0], [2, 8]).write(new Float32Array(8).fill(4));
+    k.field.damp(1 / 3, r, r);
+    r.domain([0, 0], [2, 8]).copyTo(x.domain([6, 0], [8, 8]));
+    const last = await x.domain([4, 0], [8, 8]).read();
+    return { s: await s.read(), r: await r.read(), last };
+  });
+  const third = Math.fround(1 / 3);
+  expect('views hold what they should', Math.abs(value.r[0] - 3 * third) < 1e-6 && Math.abs(value.r[8] - 4 * third) < 1e-6 && Math.abs(value.last[16] - 3 * third) < 1e-6, String(value.r));
+  expect('views are followed', found.followed === 4 && found.notes.length === 0 && found.results.length === 3, JSON.stringify([found.notes, found.results]));
+  const isRound = found.results.every(({ error }) => error.largest > 0 && error.largest < 1e-7);
+  expect('their errors are those of rounding', isRound && found.streams.every(({ resyncs }) => resyncs === 0), JSON.stringify(found.results));
+}
+
+async function structs(device) {
+  const bodies = device.stream(k.Body, [5]);
+  const at = Float32Array.from({ length: 15 }, (_, i) => 0.1 * i);
+  bodies.write({ at, mass: Float32Array.from([1, 2, 3, 4, 5]), id: Int32Array.from([1, 2, 3, 4, 5]) });
+  const { kernel, value } = await followed('structs', device, async () => {
+    k.move([0.1, 0.2, 0.3], bodies, bodies);
+    return bodies.read();
+  });
+  const by = [0.1, 0.2, 0.3].map(Math.fround);
+  const exact = Float64Array.from(at, (x, i) => x + by[i % 3] / (2 + Math.floor(i / 3)));
+  const errors = sum2(less(Float64Array.from(value.at), exact));
+  const scale = sum2(exact) + sum2([1, 2, 3, 4, 5]);
+  expect('structs are compared', isClose(kernel('move')?.own.largest ?? 0, Math.sqrt(errors / scale), 1e-6), JSON.stringify(kernel('move')?.own));
+  expect('their members have names', /^r\.at\.[xyz]$/.test(kernel('move').worst.output) && kernel('move').worst.inputs.some(({ parameter }) => parameter === 'b.id'), JSON.stringify(kernel('move').worst));
+}
+
+async function decisions(device) {
+  const x = filled(device, [100], (i) => i * 0.1);
+  const [cell, more] = [device.stream('int', [100]), device.stream('int', [100])];
+  const { found } = await followed('decisions', device, async () => {
+    k.cells(0.1, x, cell);
+    k.count(cell, more);
+    await more.read();
+  });
+  const width = Math.fround(0.1);
+  const differ = Array.from(await cell.read()).filter((n, i) => n !== Math.floor(Math.fround(i * 0.1) / width)).length;
+  const [first, second] = found.decisions;
+  expect('decisions that differ are found', differ > 0 && first?.kernel === 'cells' && first.elements === differ && !first.isInherited, JSON.stringify([differ, first]));
+  expect('those that follow are inherited', second?.kernel === 'count' && second.isInherited && second.elements === differ, JSON.stringify(second));
+  expect('the first verdict names the kernel that decides', found.verdicts[0].kind === 'decision' && found.verdicts[0].kernel === 'cells', JSON.stringify(found.verdicts));
+}
+
+async function exceptions(device) {
+  const x = filled(device, [40], (i) => (i - 3) / 3);
+  const [r, s] = [device.stream('float', [40]), device.stream('float', [40])];
+  const { found } = await followed('exceptions', device, async () => {
+    k.root(x, r);
+    k.field.damp(2, r, s);
+    await s.read();
+  });
+  const [first] = found.exceptions;
+  expect('a NaN is found', first?.kind === 'nan' && first.kernel === 'root' && first.elements === 3 && first.element[0] === 0 && first.isInReference, JSON.stringify(first));
+  expect('with where it went', first?.path.some(({ kernel }) => kernel === 'field::damp'), JSON.stringify(first?.path));
+  expect('the first verdict names it', found.verdicts[0].kind === 'nan' && found.verdicts[0].kernel === 'root', JSON.stringify(found.verdicts));
+}
+
+async function unstable(device) {
+  const x = filled(device, [64], (i) => (i + 1) / 66);
+  const { found } = await followed('unstable', device, async () => {
+    for (let i = 0; i < 40; ++i) k.logistic(x, x);
+    await x.read();
+  });
+  expect('an error that grows with each call is found', found.verdicts.some(({ kind, kernel }) => kind === 'unstable' && kernel === 'logistic'), JSON.stringify(found.verdicts));
+}
+
+// ---- what is not followed -------------------------------------------------------------------------
+
+async function named(device) {
+  const x = filled(device, [64], (i) => i / 7);
+  const [r, s] = [device.stream('float', [0]), device.stream('float', [64])];
+  const { found } = await followed('named', device, async () => {
+    k.field.damp(1 / 3, x, x);
+    await k.select(0.5, x, r);
+    const large = device.stream('float', [r.size]);
+    k.field.damp(2, r, large);
+    plain.field.damp(2, x, s);
+    plain.field.damp(2, x, s);
+    k.root(s, s);
+    await Promise.all([large.read(), s.read()]);
+  });
+  const notes = found.notes.join('\n');
+  expect('pushes are named once', notes.match(/select is not followed: it pushes or scatters/g)?.length === 1, notes);
+  expect('so are modules without programs', notes.match(/without.sk.js has no programs for it; give skc the option --shadow/g)?.length === 1, notes);
+  expect('the reference takes over what they write', found.streams.filter(({ resyncs }) => resyncs === 1).length === 2, JSON.stringify(found.streams));
+  expect('what follows is compared', found.results.length === 2 && found.results.every(({ error }) => error.largest < 1e-6), JSON.stringify(found.results));
+}
+
+async function choices(device) {
+  const x = filled(device, [16], (i) => i / 7);
+  const run = async () => {
+    for (let i = 0; i < 6; ++i) k.field.damp(1 / 3, x, x);
+    k.root(x, x);
+    await x.read();
+  };
+  const some = await followed('every', device, run, { every: 3, kernels: ['field::*'] });
+  expect('every third call is compared', some.kernel('field::damp').followed === 2 && some.kernel('root').followed === 0, JSON.stringify(some.found.kernels));
+  expect('the reference runs all of them', some.found.results[0].error.largest > 1e-9 && some.found.results[0].error.largest < 1e-6, JSON.stringify(some.found.results));
+  const refused = [[{ every: 0 }, 'every: 0'], [{ every: 1.5 }, 'every: 1.5'], [{ kernels: 'heat' }, 'kernels: give an array'], [{ kernels: [] }, 'kernels'], [{ decisions: 'own' }, "no option 'decisions'"], [null, 'no object']];
+  for (const [options, text] of refused) {
+    const error = await device.shadow(options).then(() => null, (error) => error);
+    expect(`${JSON.stringify(options)} is refused`, error instanceof SkError && error.kind === 'misuse' && error.message.includes(text), String(error));
+  }
+  const first = await device.shadow();
+  const error = await device.shadow().then(() => null, (error) => error);
+  expect('a second shadow is refused', error instanceof SkError && error.message.includes('stop() that first'), String(error));
+  const mistake = await (async () => k.field.damp(1, x, device.stream('float', [3])))().then(() => null, (error) => error);
+  expect('mistakes of the page stay its own', mistake instanceof SkError && mistake.kind === 'shape', String(mistake));
+  const gone = filled(device, [16], (i) => i);
+  gone.dispose();
+  const lost = await (async () => k.field.damp(1, gone, x))().then(() => null, (error) => error);
+  k.field.damp(1 / 3, x, x);
+  const after = await first.report();
+  expect('and are not those of the kernel', lost?.kind === 'lost' && after.followed === 1 && after.notes.length === 0, JSON.stringify([String(lost), after.notes]));
+  first.stop();
+}
+
+async function ends() {
+  const device = await Device.create();
+  const shadow = await device.shadow();
+  const x = filled(device, [16], (i) => i);
+  k.field.damp(1 / 3, x, x);
+  device.dispose();
+  expect('a report outlives its device', (await shadow.report()).calls === 1);
+  shadow.stop();
+}
+
+const unhandled = [];
+addEventListener('unhandledrejection', ({ reason }) => unhandled.push(String(reason)));
+try {
+  const device = await Device.create();
+  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, named, choices, ends]) {
+    try {
+      await run(device);
+      const error = device.context.getError();
+      if (error !== 0) report.mistakes.push(`${run.name}: GL error ${error}`);
+    } catch (error) {
+      report.mistakes.push(`${run.name}: ${error.stack}`);
+    }
+  }
+} catch (error) {
+  report.mistakes.push(`no device: ${error.stack}`);
+}
+await new Promise((done) => setTimeout(done, 50));
+expect('no promise is rejected unseen', unhandled.length === 0, unhandled.join());
+await fetch('/', { method: 'POST', body: JSON.stringify(report) });
