@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Warms a foil by a beam until it loses as much heat as it gains, and draws up that balance in doubles.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -76,7 +77,8 @@ void warm(examples::Application& app, const Settings& settings) {
              1e3 * balance.gained, 1e3 * balance.radiated, 1e3 * balance.aired);
   fmt::print("energy balance: it loses {:.5f} % {} than it gains\n", 100 * std::abs(balance.surplus()),
              balance.surplus() > 0 ? "more" : "less");
-  examples::savePng(settings.picture, classics::fieldPicture(last, n, n, 0, 4e-3f, "ember", 3));
+  examples::savePng(settings.picture,
+                    classics::fieldPicture(last, n, n, 0, std::ranges::max(last), "ember", 3));
   fmt::print("picture: {}\n", settings.picture.string());
 
   const double lacking = 1.01 * std::exp(-rate * dt * settings.steps);
