@@ -42,7 +42,7 @@ def timeless(text):
 
 def check_document(said, off, texts):
     """What docs/accuracy.md quotes: of the program, of `sk shadow`, and for each way to run the program the imbalance and the first line."""
-    for line in quoted("drift"):
+    for line in quoted("sk program drift"):
         assert line in said.splitlines(), f"docs/accuracy.md quotes '{line}', not of:\n{said}"
     for (balance, text) in zip(off, texts):
         assert f"| {balance:.5f} % | {text} |" in document, f"docs/accuracy.md has no row with {balance:.5f} % and {text}"
@@ -50,7 +50,7 @@ def check_document(said, off, texts):
 
 def check_shadow():
     done = subprocess.run([sk, "shadow", "report.json"], capture_output=True, text=True, check=True, cwd=folder.name)
-    for line in timeless("\n".join(quoted("drift shadow"))):
+    for line in timeless("\n".join(quoted("sk shadow of drift"))):
         assert line in timeless(done.stdout), f"docs/accuracy.md quotes '{line}', not of:\n{done.stdout}"
 
 
