@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# demo.sh [--small] BUILD_DIR OUT_DIR: runs the classics, then every application on input that it makes itself. Shows what each
+# demo.sh [--small] BUILD_DIR OUT_DIR: runs the classics, drift beside its reference, then every application on input that it makes itself. Shows what each
 # did, how far it was from double precision, and where the pictures are. Works without a terminal.
 # The exit status is 1 if an example failed or missed its bound. --small is for tests: it takes seconds, not minutes.
 set -uo pipefail
 
 size=512 steps=4000 elements=4000000
-classics=usual
+classics=usual small=()
 if [[ ${1:-} == --small ]]; then
-  size=96 steps=200 elements=10000 classics=small
+  size=96 steps=200 elements=10000 classics=small small=(--size 32)
   shift
 fi
 if (($# != 2)); then
@@ -78,6 +78,20 @@ classics() {
   rm "$rows" "$printed"
 }
 
+# shadowed REPORT NAME ARGUMENTS...: runs an example beside its reference in double. Its row is followed by what the report says first.
+shadowed() {
+  local report=$1
+  shift
+  printf '\n> SK_SHADOW=%s.html' "$report"
+  SK_SHADOW=$report.html example "$@"
+  verdict=$(sed -n 's/.*"verdicts":\[{[^}]*"text":"\([^"]*\)".*/\1/p' "$report.json")
+  if [[ -z $verdict ]]; then
+    echo "demo.sh: '$out/$report.json' holds no report" >&2
+    failed=1
+  fi
+  printf '%s says: %s\n' "$report.html" "$verdict"
+}
+
 # everywhere NAME ARGUMENTS...: runs an example on each device that there is, and shows what it took there.
 everywhere() {
   local name=$1 device said all=$out/devices.tsv
@@ -102,6 +116,7 @@ programs=$(cd "$programs" 2>/dev/null && pwd) || {
 examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || exit 1
 cd "$out" || exit 1
 classics "$classics"
+shadowed drift_report drift "${small[@]}" --output drift.png
 example saxpy --size "$elements"
 everywhere saxpy --size "$elements"
 example edges --size "$size" --output edges.png
@@ -120,7 +135,7 @@ example fluid "$examples/applications/fluid/scenes/plume.toml" --size "$((size *
 example waves "$examples/applications/waves/scenes/drops.toml" --size "$((size / 4))x$((size * 7 / 36))" --steps 28 --pixels "${size}x$((size * 5 / 8))"
 
 echo
-awk -F '\t' '
+awk -F '\t' -v verdict="$verdict" '
   $7 != "" { device = $7 }
   { for (i = 1; i <= 6; ++i) { cell[NR, i] = $i; if (length($i) > width[i]) width[i] = length($i) } }
   function line(a, b, c, d, e, f) {
@@ -134,9 +149,12 @@ awk -F '\t' '
     rule = sprintf("%*s", width[1] + width[2] + width[3] + width[4] + width[5] + 16, "")
     gsub(/ /, "-", rule)
     print rule
-    for (r = 1; r <= NR; ++r) line(cell[r, 1], cell[r, 2], cell[r, 3], cell[r, 4], cell[r, 5], cell[r, 6])
+    for (r = 1; r <= NR; ++r) {
+      line(cell[r, 1], cell[r, 2], cell[r, 3], cell[r, 4], cell[r, 5], cell[r, 6])
+      if (cell[r, 1] == "drift") printf "%-*s  its report: %s\n", width[1], "", verdict
+    }
   }' "$summary"
 
 printf '\npictures in %s:\n' "$out"
-printf '  %s\n' classics/*.png *.png
+printf '  %s\n' classics/*.png *.png drift_report.html
 exit "$failed"

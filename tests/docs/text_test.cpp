@@ -196,6 +196,7 @@ TEST_CASE("commands in sh blocks exist", "[text]") {
                                        "./saxpy",
                                        "./edges",
                                        "./stats",
+                                       "./drift",
                                        "apt-get",
                                        "cd",
                                        "git",
