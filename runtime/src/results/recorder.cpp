@@ -20,8 +20,8 @@
 #include "device/configuration.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
+#include "results/members.hpp"
 #include "sk/linked_file.hpp"
-#include "sk/narrow.hpp"
 
 namespace sk::results {
 
@@ -42,105 +42,6 @@ Recorder* openRecorder() {
   if (setting == nullptr || *setting == '\0') return nullptr;
   ::pthread_atfork(nullptr, [] { forks.fetch_add(1, std::memory_order_relaxed); }, nullptr);
   return new Recorder(setting);  // never deleted: devices that outlive the end of main() still refer to it
-}
-
-std::size_t hostBytesOf(program::Scalar scalar) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Bool:
-    case Char:
-    case Uchar:
-    case Unorm8:
-    case Snorm8: return 1;
-    case Half:
-    case Short:
-    case Ushort:
-    case Unorm16:
-    case Snorm16: return 2;
-    case Int:
-    case Uint:
-    case Float: return 4;
-    case Double:
-    case Long:
-    case Ulong: return 8;
-  }
-  return 0;
-}
-
-Values::Kind kindOf(program::Scalar scalar) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Float:
-    case Half:
-    case Unorm8:
-    case Snorm8:
-    case Unorm16:
-    case Snorm16: return Values::Kind::Single;
-    case Double: return Values::Kind::Double;
-    case Bool:
-    case Int:
-    case Uint:
-    case Long:
-    case Ulong:
-    case Char:
-    case Uchar:
-    case Short:
-    case Ushort: return Values::Kind::Integer;
-  }
-  return Values::Kind::Integer;
-}
-
-template <class T>
-T valueAt(const std::byte* place) {
-  T value;
-  std::memcpy(&value, place, sizeof value);
-  return value;
-}
-
-template <class T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// Appends a component as Values holds it.
-void appendComponent(std::string& bytes, program::Scalar scalar, const std::byte* place) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Float: return append(bytes, valueAt<float>(place));
-    case Half: return append(bytes, static_cast<float>(valueAt<half>(place)));
-    case Unorm8: return append(bytes, static_cast<float>(valueAt<unorm8>(place)));
-    case Snorm8: return append(bytes, static_cast<float>(valueAt<snorm8>(place)));
-    case Unorm16: return append(bytes, static_cast<float>(valueAt<unorm16>(place)));
-    case Snorm16: return append(bytes, static_cast<float>(valueAt<snorm16>(place)));
-    case Double: return append(bytes, valueAt<double>(place));
-    case Bool:
-    case Uchar: return append(bytes, std::int64_t{valueAt<std::uint8_t>(place)});
-    case Char: return append(bytes, std::int64_t{valueAt<std::int8_t>(place)});
-    case Short: return append(bytes, std::int64_t{valueAt<std::int16_t>(place)});
-    case Ushort: return append(bytes, std::int64_t{valueAt<std::uint16_t>(place)});
-    case Int: return append(bytes, std::int64_t{valueAt<std::int32_t>(place)});
-    case Uint: return append(bytes, std::int64_t{valueAt<std::uint32_t>(place)});
-    case Long:
-    case Ulong: return append(bytes, valueAt<std::int64_t>(place));
-  }
-}
-
-/// The members of an element: fields of one path, which may have several planes.
-struct Member {
-  std::string_view path;
-  std::span<const program::Field> fields;
-};
-
-std::vector<Member> membersOf(const program::Element& element) {
-  std::vector<Member> members;
-  for (std::size_t i = 0; i < element.fields.size(); ++i) {
-    if (!members.empty() && members.back().path == element.fields[i].path) {
-      members.back().fields = {members.back().fields.data(), members.back().fields.size() + 1};
-    } else {
-      members.push_back({element.fields[i].path, element.fields.subspan(i, 1)});
-    }
-  }
-  return members;
 }
 
 std::string nameOf(const std::string& name, const Member& member) {
@@ -301,43 +202,14 @@ void Recorder::makeRoom(Recorded& recorded, std::size_t bytes) {
 
 void Recorder::addComponents(const std::string& name, const program::Element& element,
                              const std::byte* elements, std::size_t count) {
-  for (const Member& member : membersOf(element)) {
-    Values values{.kind = kindOf(member.fields.front().scalar), .bytes = {}};
-    const program::Field& only = member.fields.front();
-    if (only.scalar == program::Scalar::Float && only.width * sizeof(float) == element.size) {  // as it is
-      values.bytes.assign(reinterpret_cast<const char*>(elements), count * element.size);
-      keep(nameOf(name, member), std::move(values));
-      continue;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const program::Field& field : member.fields) {
-        const std::byte* const first = elements + i * element.size + field.offset;
-        for (std::size_t k = 0; k < field.width; ++k)
-          appendComponent(values.bytes, field.scalar, first + k * hostBytesOf(field.scalar));
-      }
-    }
-    keep(nameOf(name, member), std::move(values));
-  }
+  for (const Member& member : membersOf(element))
+    keep(nameOf(name, member), valuesOf(member, element, elements, count));
 }
 
 void Recorder::addComponents(const std::string& name, const program::Element& element,
                              std::span<const double> components, Values::Kind kind) {
-  std::size_t width = 0;
-  for (const program::Field& field : element.fields) width += field.width;
-  std::size_t first = 0;
-  for (const Member& member : membersOf(element)) {
-    std::size_t own = 0;
-    for (const program::Field& field : member.fields) own += field.width;
-    Values values{.kind = kind, .bytes = {}};
-    for (std::size_t i = first; i < components.size(); i += width) {
-      for (const double component : components.subspan(i, own)) {
-        kind == Values::Kind::Single ? append(values.bytes, static_cast<float>(component))
-                                     : append(values.bytes, component);
-      }
-    }
-    first += own;
-    keep(nameOf(name, member), std::move(values));
-  }
+  for (const Member& member : membersOf(element))
+    keep(nameOf(name, member), valuesOf(member, element, components, kind));
 }
 
 void Recorder::addRead(const StreamState& stream, const std::byte* elements, std::size_t count) noexcept {
