@@ -306,7 +306,7 @@ const std::map<std::string, std::function<void()>> programs = {
     {"cancel", runCancel},     {"unstable", runUnstable}, {"nearest", runNearest},
     {"sum", runSum},           {"push", runPush},         {"everything", runEverything},
     {"replay", runReplay},     {"fine", runFine},         {"exit", runExit},
-    {"abort", runAbort},       {"fork", runFork},         {"write", runWrite},
+    {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
     {"nothing", runNothing},   {"devices", runDevices}};
 
 }  // namespace

@@ -105,11 +105,11 @@ done, report = run("nothing")
 check(done.stdout == "1\n" and first(report)["text"] == "the program has called no kernel", f"nothing: {first(report)}")
 done, report = run("devices")
 check(first(report)["kernel"] == "faults::square", f"devices: {first(report)}")
-done, report = run("write")
+done, report = run("overwrite")
 own, other = (os.path.join(folder.name, name) for name in ("report.html", "report-2.html"))
 with open(own) as file:
-    check(file.read() == "the program's own\n", "write: the program's own file was replaced")
-check(os.path.exists(other) and "report-2.html" in done.stderr, f"write: {done.stderr}")
+    check(file.read() == "the program's own\n", "overwrite: the program's own file was replaced")
+check(os.path.exists(other) and "report-2.html" in done.stderr, f"overwrite: {done.stderr}")
 
 # What cannot be followed is said, and changes nothing.
 plain, _ = run("fine", shadow=None)

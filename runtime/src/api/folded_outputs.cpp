@@ -245,13 +245,15 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> given, c
   others.over = folded.over;
   const FoldCall call(reduction, folded.arguments, others, folded.placed);
   checkFoldAssertions(call.device(), reduction.fold, given, options.box, call.resolved().options);
-  checkRanges({.device = call.device(),
-               .kernel = reduction.fold,
-               .arguments = given,
-               .box = options.box,
-               .run = [&reduction, options](std::span<const Argument> own, std::span<void* const>) {
-                 sk::fold(reduction, own, options);
-               }});
+  if (checksRanges()) {
+    checkRanges({.device = call.device(),
+                 .kernel = reduction.fold,
+                 .arguments = given,
+                 .box = options.box,
+                 .run = [&reduction, options](std::span<const Argument> own, std::span<void* const>) {
+                   sk::fold(reduction, own, options);
+                 }});
+  }
   results::noteCall(call.device(), reduction.fold, &reduction, others, call.resolved().options);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();

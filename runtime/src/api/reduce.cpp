@@ -350,6 +350,7 @@ struct GivenReduction {
 
 void checkReducedRanges(DeviceState& device, const GivenReduction& given, std::span<void* const> values,
                         const std::optional<ScanOrder>& scan) {
+  if (!checksRanges()) return;  // without allocating what repeats the call
   const auto repeat = [&reduction = given.reduction, options = given.options, isScan = scan.has_value()](
                           std::span<const Argument> others, std::span<void* const> results) {
     if (isScan) return sk::scan(reduction, others, options);

@@ -295,8 +295,10 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
         *report, isOnly ? name : fmt::format("{} of {}", parameter.name, name), true)];
     ++result.reads;
     result.elements = 1;
-    result.last = after.relative;
-    result.largest = std::max(result.largest, after.relative);
+    result.scale = std::max(result.scale, errors.scale());
+    result.last = result.scale > 0 && errors.reals > 0 ? after.relative * errors.scale() / result.scale
+                                                       : after.relative;
+    result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
     result.shares = after.shares;

@@ -135,6 +135,11 @@ using Block = std::array<double, blockSize>;
 const double* doublesOf(const Column& column, std::int64_t first, std::int64_t count, Block& room) {
   if (column.bytes == sizeof(double) && (column.scalar == Scalar::Float || column.scalar == Scalar::Double))
     return static_cast<const double*>(column.array) + first;
+  if (column.bytes == sizeof(float) && column.scalar == Scalar::Float) {
+    const auto* const floats = static_cast<const float*>(column.array) + first;
+    std::copy_n(floats, count, room.begin());
+    return room.data();
+  }
   for (std::int64_t i = 0; i < count; ++i) room[static_cast<std::size_t>(i)] = column.at(first + i);
   return room.data();
 }

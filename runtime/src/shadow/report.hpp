@@ -126,6 +126,7 @@ struct ResultRecord {
   bool isValue = false;  ///< of a reduce
   std::int64_t reads = 0, elements = 0;
   double largest = 0, last = 0;  ///< relative errors of the reads
+  double scale = 0;  ///< of a value: the largest of the reads, since a sum may be 0 by chance
   std::int64_t differs = 0;  ///< integers that differ
   std::int64_t notFinite = 0;  ///< elements of the last read that are not finite, where the reference's are
   Shares shares;  ///< of the last read
