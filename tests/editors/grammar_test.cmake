@@ -67,7 +67,7 @@ expect(intrinsics 0 ${intrinsics})
 list(REMOVE_ITEM ofStreams push)
 expect(streams 0 ${ofStreams})
 
-spellings(modes compiler/frontend/tokens/parameter_editor.cpp "isWord\\(name, \"([a-z]+)\"\\)")
+spellings(modes compiler/frontend/tokens/parameter_attributes.cpp "isWord\\(name, \"([a-z]+)\"\\)")
 string(JSON match GET "${grammar}" repository attributes patterns 0 patterns 0 match)
 foreach(mode IN LISTS modes)
   if(NOT match MATCHES "[(|]${mode}[|)]")

@@ -353,7 +353,14 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
   record.call = number_;
   record.output = std::string(parameter.name) + componentName(type, component);
   record.isReal = isRealType(scalarOf(type, component));
-  if (written.device == nullptr) return record;
+  if (written.device == nullptr) {  // another number of elements was pushed
+    const bool isOwn = hasOwn_ && written.own->shape.size() != written.stream->shape.size();
+    record.output += " (number of elements)";
+    record.isReal = false;
+    record.device = static_cast<double>(written.stream->shape.size());
+    record.reference = static_cast<double>((isOwn ? *written.own : *written.stream->held()).shape.size());
+    return record;
+  }
   const Shape& shape = written.device->shape;
   record.device = shadow::valueAt(*written.device, component, element);
   record.reference = written.own != nullptr && written.own->shape.size() == shape.size() && hasOwn_
