@@ -24,6 +24,8 @@ constexpr Format pairFormat = {0x1p-44, 0x1p-126, 0x1.fffffep127, /*isRelative=*
 
 /// What ARB_shader_precision allows for quotients and roots, in units in the last place.
 constexpr double shaderUnits = 2.5;
+/// The same of halves: half a unit, and 2.5 units of a float.
+constexpr double halfUnits = 0.5007;
 
 Integer integerOf(Scalar type) {
   return type == Scalar::Int ? Integer::Signed : type == Scalar::Uint ? Integer::Unsigned : Integer::No;
@@ -125,9 +127,11 @@ NodeId Arithmetic::divide(Scalar type, NodeId x, NodeId y) {
     node.integer = integerOf(type);
     return add(node);
   }
-  if (isNative() || type != Scalar::Float || options_.precision != Precision::Single)
+  const bool isHalf = options_.precision == Precision::Half;
+  if (isNative() || type != Scalar::Float || (!isHalf && options_.precision != Precision::Single))
     return basic(Op::Divide, type, x, y);
-  return add({.op = Op::Divide, .operands = {x, y, noNode}, .rounding = units(type, shaderUnits)});
+  const double amount = isHalf ? halfUnits : shaderUnits;
+  return add({.op = Op::Divide, .operands = {x, y, noNode}, .rounding = units(type, amount)});
 }
 
 NodeId Arithmetic::negate(Scalar type, NodeId x) {
@@ -172,8 +176,8 @@ NodeId Arithmetic::call(Scalar type, UnaryFunction function, NodeId x) {
       return divide(type, number(1), call(type, UnaryFunction::Sqrt, x));
     }
     // A device's root of a double is within a unit.
-    node.rounding =
-        isNative() || isHalf || isPair(type) ? nearest(type) : units(type, isFloat ? shaderUnits : 1);
+    const double amount = isFloat ? shaderUnits : isHalf ? halfUnits : 1;
+    node.rounding = isNative() || isPair(type) ? nearest(type) : units(type, amount);
     return add(node);
   }
   node.rounding = roundingOf(type, spelling(function));
