@@ -250,9 +250,11 @@ async function choices(device) {
   const gone = filled(device, [16], (i) => i);
   gone.dispose();
   const lost = await (async () => k.field.damp(1, gone, x))().then(() => null, (error) => error);
+  const rejected = await k.total(gone).then(() => null, (error) => error);
   k.field.damp(1 / 3, x, x);
+  await k.total(x);
   const after = await first.report();
-  expect('and are not those of the kernel', lost?.kind === 'lost' && after.followed === 1 && after.notes.length === 0, JSON.stringify([String(lost), after.notes]));
+  expect('and are not those of the kernel', lost?.kind === 'lost' && rejected?.kind === 'lost' && after.followed === 2 && after.notes.length === 0, JSON.stringify([String(lost), after.notes]));
   first.stop();
 }
 

@@ -108,7 +108,7 @@ export class FollowedCall {
 
   /** What follows the device's call, which has returned `result`. */
   finish(result: unknown): void {
-    if (this.obstacle !== null) this.giveUp(this.obstacle);
+    if (this.obstacle !== null) this.giveUp(this.obstacle, result);
     if (this.form === null) {
       this.loseOutputs();
       if (result instanceof Promise) result.then(() => this.loseOutputs(), () => undefined); // which has pushed by then
@@ -123,7 +123,7 @@ export class FollowedCall {
       if (this.isMeasured) this.compare(result, own, outputs);
       else this.end();
     } catch (error) {
-      this.giveUp(error);
+      this.giveUp(error, result);
       this.loseOutputs();
       this.end();
     }
@@ -259,12 +259,19 @@ export class FollowedCall {
     });
   }
 
-  private giveUp(error: unknown): void {
-    const why = error instanceof Error ? error.message : String(error);
+  /** The reference cannot make the call, unless the device has refused it, too: reduces reject what they promise then. */
+  private giveUp(error: unknown, result: unknown): void {
     this.form = null;
-    if (this.follower.device.lost) return;
-    this.follower.givenUp.set(this.called.callable, why);
-    this.follower.records.note(`${this.called.callable.name} is not followed: ${why}`);
+    const { givenUp, records, device } = this.follower;
+    const { callable } = this.called;
+    const why = error instanceof Error ? error.message : String(error);
+    const record = () => {
+      if (device.lost) return;
+      givenUp.set(callable, why);
+      records.note(`${callable.name} is not followed: ${why}`);
+    };
+    if (result instanceof Promise) result.then(record, () => undefined);
+    else record();
   }
 
   /** The device has written elements that the reference has not. */
