@@ -24,7 +24,7 @@ constexpr Format pairFormat = {0x1p-44, 0x1p-126, 0x1.fffffep127, /*isRelative=*
 
 /// What ARB_shader_precision allows for quotients and roots, in units in the last place.
 constexpr double shaderUnits = 2.5;
-/// The same of halves: half a unit, and 2.5 units of a float.
+/// Halves have half a unit of their own, and 2.5 units of a float.
 constexpr double halfUnits = 0.5007;
 
 Integer integerOf(Scalar type) {

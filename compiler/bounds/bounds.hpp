@@ -43,7 +43,7 @@ struct NumberBound {
   std::vector<Contribution> contributions = {};  ///< the largest first
   std::vector<Jump> jumps = {};
   std::vector<Rewrite> rewrites = {};
-  /// Of a sum, min or max: what each element contributes. The bounds above are of all elements, if their number is known.
+  /// What each element contributes to a sum, a minimum or a maximum. The bounds above are of all elements, if their number is known.
   bool isFold = false;
 };
 

@@ -45,7 +45,7 @@ std::optional<Interval> rangeOf(const Options& options, const ir::KernelParam& p
     if (cut == std::string_view::npos) break;
     part = part.substr(0, cut);
   }
-  // Of the parameter itself, and not of its index or extent. A stream rounds its ends as it rounds its elements.
+  // A declared range bounds the parameter, not its index or extent. A stream rounds the ends as it rounds its elements.
   const bool isOfValue = name.substr(0, name.find_first_of(".[")) == param.name;
   if (!isOfValue || !param.range || !std::isfinite(param.range->low) || !std::isfinite(param.range->high))
     return std::nullopt;

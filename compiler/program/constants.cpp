@@ -222,7 +222,7 @@ class ConstantWriter {
   }
   std::string textOf(bool value, const std::string&, Word) { return value ? "true" : "false"; }
   std::string textOf(float value, const std::string&, Word) { return floatLiteral(value); }
-  /// Of a range, whose ends may be infinite.
+  /// Writes one end of a range, which may be infinite.
   std::string textOf(double value, const std::string&, Word) {
     if (std::isinf(value)) return value < 0 ? "-ValueRange::infinity" : "ValueRange::infinity";
     return doubleLiteral(value);

@@ -456,7 +456,7 @@ class Builder {
             .range = rangeOf(context.kernel, param)};
   }
 
-  /// Of declared kernels: what others take in between need not be in any range.
+  /// Only declared kernels have ranges: the values between the passes of a kernel need not be in any.
   static std::optional<sk::program::ValueRange> rangeOf(const Kernel& kernel, const KernelParam& param) {
     if (!param.range || !isUnit(kernel)) return std::nullopt;
     return sk::program::ValueRange{param.range->low, param.range->high};

@@ -229,7 +229,7 @@ class ScriptWriter {
     return kernel;
   }
 
-  /// The same of a reduce or a kernel with folded outputs. Its accumulators are doubles, and stay so.
+  /// Does the same for a reduce or a kernel with folded outputs, whose accumulators stay doubles.
   Json shadowReduction(const emit::Unit& unit) {
     const Reduction& plain = *unit.reduction;
     std::string why = whyNestsTooDeepInPairs(unit.id);

@@ -48,19 +48,6 @@ KernelRecord& recordOf(Report& report, int kernel) {
   return report.kernels[static_cast<std::size_t>(kernel)];
 }
 
-bool isRealType(program::Scalar scalar) {
-  switch (scalar) {
-    case program::Scalar::Float:
-    case program::Scalar::Double:
-    case program::Scalar::Half:
-    case program::Scalar::Unorm8:
-    case program::Scalar::Snorm8:
-    case program::Scalar::Unorm16:
-    case program::Scalar::Snorm16: return true;
-    default: return false;
-  }
-}
-
 /// ".y", ".t", or nothing for the only component of an element.
 std::string componentName(const program::Element& element, int component) {
   int number = 0;
@@ -131,7 +118,7 @@ void addUniform(std::vector<shadow::Input>& inputs, const program::Parameter& pa
       const auto* const at =
           static_cast<const std::byte*>(value) + field.offset + c * program::hostBytes(field.scalar);
       inputs.push_back({std::string(parameter.name) + componentName(*parameter.element, component),
-                        hostValue(at, field.scalar), isRealType(field.scalar)});
+                        hostValue(at, field.scalar), shadow::isReal(field.scalar)});
     }
   }
 }
@@ -352,7 +339,7 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
   ElementRecord record;
   record.call = number_;
   record.output = std::string(parameter.name) + componentName(type, component);
-  record.isReal = isRealType(scalarOf(type, component));
+  record.isReal = shadow::isReal(scalarOf(type, component));
   if (written.device == nullptr) {  // another number of elements was pushed
     const bool isOwn = hasOwn_ && written.own->shape.size() != written.stream->shape.size();
     record.output += " (number of elements)";
@@ -385,7 +372,7 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
       const int of = static_cast<int>(c);
       record.inputs.push_back({std::string(given.name) + componentName(*read->stream->element, of),
                                shadow::valueAt(*read->device, of, number),
-                               isRealType(read->device->components.types()[c].scalar)});
+                               shadow::isReal(read->device->components.types()[c].scalar)});
     }
   }
   return record;

@@ -29,7 +29,6 @@ void OutputErrors::add(const OutputErrors& other) {
   infinities.add(other.infinities);
   newNans.add(other.newNans);
   newInfinities.add(other.newInfinities);
-  hidden.add(other.hidden);
   flushed.add(other.flushed);
   integers += other.integers;
   ownDecisions.add(other.ownDecisions);
@@ -57,8 +56,6 @@ double OutputErrors::relative(double squares) const {
   return reference2 > 0 ? std::sqrt(squares / reference2) : 1;
 }
 
-namespace {
-
 using program::Scalar;
 
 bool isReal(Scalar scalar) {
@@ -82,6 +79,8 @@ bool isReal(Scalar scalar) {
   }
   return false;
 }
+
+namespace {
 
 template <class T>
 T loaded(const void* array, std::int64_t index) {
@@ -161,7 +160,6 @@ void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors) {
   if (std::isinf(d)) errors.infinities.add(element, block.component);
   if (std::isfinite(o) && std::isnan(d)) errors.newNans.add(element, block.component);
   if (std::isfinite(o) && std::isinf(d)) errors.newInfinities.add(element, block.component);
-  if (!std::isfinite(o) && std::isfinite(d)) errors.hidden.add(element, block.component);
   if (!std::isfinite(d) || !std::isfinite(o) || !std::isfinite(r)) return;
   const double own = d - o, total = d - r, inherited = o - r;
   ++errors.reals;

@@ -58,7 +58,6 @@ struct OutputErrors {
   Worst own, total;
   Found nans, infinities;  ///< of the device
   Found newNans, newInfinities;  ///< of the device where the reference is finite with the device's inputs
-  Found hidden;  ///< elements that the device has finite, and the reference not, with the device's inputs
   Found flushed;  ///< zeros of the device where the reference has a number below the smallest normal float
   std::int64_t integers = 0;  ///< components of integers and booleans
   Found ownDecisions, decisions;  ///< integers that differ from o, from r
@@ -71,7 +70,7 @@ struct OutputErrors {
   double relativeOwn() const { return relative(own2); }
   double relativeInherited() const { return relative(inherited2); }
   double relativeTotal() const { return relative(total2); }
-  /// The same of integers, as numbers, but no more than their share that differs allows: some are numbers of things.
+  /// The relative error of integers, but at most the share that differs: an integer may be a number or a name.
   double relativeIntegers() const;
   /// The share of the total error that the call added itself, by projection on the total: 0 to 1.
   double ownShare() const;
@@ -83,6 +82,9 @@ struct OutputErrors {
 
 /// Compares dense streams of one shape on native devices. Without `own`, the own error counts as the total one.
 OutputErrors compare(const NativeStream& device, const NativeStream* own, const NativeStream& reference);
+
+/// Whether components of this type are compared as real numbers.
+bool isReal(program::Scalar scalar);
 
 /// Sum over all floats of the square of what rounding to half changes.
 double squaresOfHalfRounding(const NativeStream& stream);

@@ -47,7 +47,7 @@ class Spread {
   }
   bool isEmpty() const { return count_ == 0; }
   double largest() const { return largest_; }
-  /// Of the errors above 0.
+  /// The geometric mean of the errors above 0.
   double typical() const {
     return positive_ == 0 ? 0 : std::exp(logarithms_ / static_cast<double>(positive_));
   }

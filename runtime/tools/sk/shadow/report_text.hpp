@@ -11,7 +11,7 @@
 namespace sk_tool {
 
 /// The whole report: verdicts, results, kernels by their share of the results' errors, exceptional values, decisions, account and notes.
-/// Of each table, the first `most` rows. Throws std::runtime_error if an entry is missing or has another type.
+/// Prints the first `most` rows of each table. Throws std::runtime_error if an entry is missing or has another type.
 std::string shadowText(const Entry& report, std::size_t most);
 
 /// All that the report has of one kernel, which is named in full or from a `::` on; of several with such a name, of each. Throws

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which of many steps to take: as many as hold together, or as few as still hold. Pure functions of a predicate, which runs the program.
+// Chooses steps: as many as hold together, or as few as still hold. Pure functions of a predicate, which runs the program.
 #pragma once
 
 #include <functional>

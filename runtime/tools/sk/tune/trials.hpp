@@ -68,7 +68,7 @@ class Trials {
   /// Runs two settings in turns, both of which must have run. Compares the seconds of one kernel if one is named and its times are
   /// known, which other work on the machine changes less. Throws OutOfBudget.
   Comparison compare(const Setting& first, const Setting& second, int rounds, const std::string& kernel = {});
-  /// Runs a setting until it has so many times. Throws OutOfBudget.
+  /// Runs a setting until it has been timed this often. Throws OutOfBudget.
   void time(const Setting& setting, std::size_t count);
 
   /// All trials, in the order in which they ran first.

@@ -66,7 +66,7 @@ export class OutputErrors {
     return this.relative(this.total2);
   }
 
-  /** The same of integers, as numbers, but no more than their share that differs allows: some are numbers of things. */
+  /** The relative error of integers, but at most the share that differs: an integer may be a number or a name. */
   relativeIntegers(): number {
     if (this.decisions.count === 0) return 0;
     const asNumbers = this.integerReference2 > 0 ? this.integerTotal2 / this.integerReference2 : 1;
