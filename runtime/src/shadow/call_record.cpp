@@ -288,6 +288,7 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
+    result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
     result.shares = after.shares;
   }
 }
