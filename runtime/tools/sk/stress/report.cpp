@@ -14,24 +14,27 @@ namespace sk_tool::stress {
 
 namespace {
 
-void printRun(const Run& run) {
+void printRun(const Run& run, bool isShort) {
   fmt::print("  {}\n", run.of.text);
   for (const Finding& finding : run.findings) {
     std::string text = finding.text;
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
       text.insert(at + 1, "    ");
+    const std::size_t others = run.findings.size() - 1;
+    if (isShort && others > 0) text += fmt::format("; and {} more", others);
     fmt::print("      {}\n", text);
+    if (isShort) return;
   }
 }
 
 /// Prints the runs that a condition chooses, below a line; nothing if there are none.
 template <class Condition>
-void printRuns(const Report& report, const std::string& title, const Condition& isChosen) {
+void printRuns(const Report& report, const std::string& title, bool isShort, const Condition& isChosen) {
   const auto count = std::ranges::count_if(report.runs, isChosen);
   if (count == 0) return;
   fmt::print("\n{}\n", title);
   for (const Run& run : report.runs) {
-    if (isChosen(run)) printRun(run);
+    if (isChosen(run)) printRun(run, isShort);
   }
 }
 
@@ -54,16 +57,16 @@ std::size_t Report::broken() const {
 
 void print(const Report& report, bool isAll) {
   printPlain(report);
-  printRuns(report, fmt::format("breaks in {}:", cases(report.broken())),
+  printRuns(report, fmt::format("breaks in {}:", cases(report.broken())), false,
             [](const Run& run) { return run.isBroken(); });
   printRuns(report,
             "changes where no range is declared ([[range(low, high)]] on a parameter says which values must "
             "work), or where the program may refuse a size:",
-            [](const Run& run) { return !run.isBroken() && !run.findings.empty(); });
+            !isAll, [](const Run& run) { return !run.isBroken() && !run.findings.empty(); });
   const auto holds = [](const Run& run) { return run.findings.empty() && run.of.kind != Case::Kind::AsItIs; };
   const auto count = static_cast<std::size_t>(std::ranges::count_if(report.runs, holds));
   if (isAll) {
-    printRuns(report, fmt::format("holds in {}:", cases(count)), holds);
+    printRuns(report, fmt::format("holds in {}:", cases(count)), false, holds);
   } else {
     fmt::print("\nholds in {}{}\n", cases(count), count == 0 ? "" : " (--all lists them)");
   }

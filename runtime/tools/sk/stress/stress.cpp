@@ -193,7 +193,7 @@ void addStress(CLI::App& app) {
   command->add_option("--json", options->json, "also write all runs as JSON")->type_name("FILE");
   command->add_option("--keep", options->keep, "keep the page of each run's shadow in this folder")
       ->type_name("FOLDER");
-  command->add_flag("--all", options->isAll, "also list the cases that hold");
+  command->add_flag("--all", options->isAll, "list the cases that hold, too, and all that is wrong with the others");
   command->add_flag("--any-status", options->anyStatus,
                     "the exit status of the program does not count, because it checks its own results");
   command->add_option("program", options->words, "after --, the program and its arguments")->required();
