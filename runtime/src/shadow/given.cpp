@@ -12,9 +12,9 @@
 #include "device/region.hpp"
 #include "shadow/recorder.hpp"
 #include "sk/host_vector.hpp"
-#include "sk/narrow.hpp"
 #include "sk/scalar_bytes.hpp"
 #include "support/checked_size.hpp"
+#include "support/scalar_types.hpp"
 
 namespace sk {
 
@@ -25,13 +25,6 @@ using shadow::Recorder;
 using shadow::Setting;
 
 namespace {
-
-template <class T>
-T loaded(const std::byte* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return value;
-}
 
 template <class T>
 void stored(T value, std::byte* bytes) {
@@ -48,42 +41,8 @@ T integer(double value) {
   return static_cast<T>(value);
 }
 
-/// Calls use(T()) with the type of a scalar in host memory.
-template <class Use>
-auto withType(Scalar scalar, Use&& use) {
-  switch (scalar) {
-    case Scalar::Float: return use(float());
-    case Scalar::Double: return use(double());
-    case Scalar::Half: return use(half());
-    case Scalar::Unorm8: return use(unorm8());
-    case Scalar::Snorm8: return use(snorm8());
-    case Scalar::Unorm16: return use(unorm16());
-    case Scalar::Snorm16: return use(snorm16());
-    case Scalar::Int: return use(std::int32_t());
-    case Scalar::Uint: return use(std::uint32_t());
-    case Scalar::Long: return use(std::int64_t());
-    case Scalar::Ulong: return use(std::uint64_t());
-    case Scalar::Char: return use(std::int8_t());
-    case Scalar::Uchar: return use(std::uint8_t());
-    case Scalar::Short: return use(std::int16_t());
-    case Scalar::Ushort: return use(std::uint16_t());
-    case Scalar::Bool: break;
-  }
-  return use(bool());
-}
-
-double numberAt(const std::byte* bytes, Scalar scalar) {
-  return withType(scalar, [&]<class T>(T) {
-    if constexpr (std::is_arithmetic_v<T>) {
-      return static_cast<double>(loaded<T>(bytes));
-    } else {
-      return static_cast<double>(static_cast<float>(loaded<T>(bytes)));
-    }
-  });
-}
-
 void setNumber(double value, std::byte* bytes, Scalar scalar) {
-  withType(scalar, [&]<class T>(T) {
+  withScalarType(scalar, [&]<class T>(T) {
     if constexpr (std::is_same_v<T, bool>) {
       stored(value != 0, bytes);
     } else if constexpr (std::is_integral_v<T>) {
