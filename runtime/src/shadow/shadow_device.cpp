@@ -12,6 +12,7 @@
 #include "device/loop_state.hpp"
 #include "device/rows_state.hpp"
 #include "native/entries.hpp"
+#include "shadow/copies.hpp"
 #include "shadow/results.hpp"
 #include "shadow/shadow_call.hpp"
 #include "shadow/shadow_staging.hpp"
@@ -21,20 +22,58 @@
 namespace sk {
 
 std::unique_ptr<NativeStream> TemporaryStreams::take(const program::Element& element, const Shape& shape) {
-  const auto found = std::ranges::find_if(free_, [&](const std::unique_ptr<NativeStream>& stream) {
+  const auto found = std::ranges::find_if(streams_, [&](const std::unique_ptr<NativeStream>& stream) {
     return stream->element == &element && stream->shape == shape;
   });
-  if (found == free_.end()) return std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
-  std::unique_ptr<NativeStream> stream = std::move(*found);
-  free_.erase(found);
+  std::unique_ptr<NativeStream> stream;
+  if (found == streams_.end()) {
+    stream = std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
+  } else {
+    stream = std::move(*found);
+    streams_.erase(found);
+    free_ -= bytesOf(*stream);
+  }
+  countTaken(bytesOf(*stream));
   return stream;
+}
+
+void TemporaryStreams::countTaken(std::int64_t bytes) {
+  taken_ += bytes;
+  mostTaken_ = std::max(mostTaken_, taken_);
 }
 
 void TemporaryStreams::giveBack(std::unique_ptr<NativeStream> stream) {
   if (stream == nullptr) return;
-  constexpr std::size_t most = 24;
-  if (free_.size() == most) free_.erase(free_.begin());  // the one that nobody has taken for longest
-  free_.push_back(std::move(stream));
+  countTaken(-bytesOf(*stream));
+  free_ += bytesOf(*stream);
+  streams_.push_back(std::move(stream));
+  trim();
+}
+
+void TemporaryStreams::trim() {
+  constexpr std::size_t most = 64;  // a search among many takes long
+  while (!streams_.empty() && (owner_.roomForTemporaries() < 0 || streams_.size() > most)) {
+    free_ -= bytesOf(*streams_.front());
+    streams_.erase(streams_.begin());
+  }
+}
+
+void ShadowDevice::keep(std::int64_t bytes) {
+  temporaries_.countTaken(-bytes);
+  kept_ += bytes;
+  temporaries_.trim();
+}
+
+void ShadowDevice::takeKept(std::int64_t bytes) {
+  kept_ -= bytes;
+  temporaries_.countTaken(bytes);
+}
+
+std::int64_t ShadowDevice::roomForTemporaries() const {
+  std::int64_t room = mostKept() - kept_;
+  room += temporaries_.mostTakenBytes() - temporaries_.freeBytes();
+  if (quadTemporaries_) room += quadTemporaries_->mostTakenBytes() - quadTemporaries_->freeBytes();
+  return room;
 }
 
 struct ShadowDevice::RowsCopy {
@@ -57,7 +96,7 @@ ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorde
     : primary_(std::move(primary)),
       recorder_(recorder),
       reference_(std::make_unique<NativeDevice>(RealType::Double)),
-      temporaries_(*reference_) {
+      temporaries_(*reference_, *this) {
   interposed = this;
   limits = primary_->limits;
   memoryLimit = primary_->memoryLimit;
@@ -105,7 +144,7 @@ NativeDevice& ShadowDevice::ownReference(const program::Kernel& kernel) {
   }
   if (!quad_) {
     quad_ = std::make_unique<NativeDevice>(RealType::Quad);
-    quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_);
+    quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_, *this);
   }
   return *quad_;
 }
