@@ -8,6 +8,10 @@
 #include "native/float_vectors.hpp"
 #include "sk/native/code.hpp"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#endif
+
 namespace sk::shadow {
 
 bool DifferenceSums::isFinite() const { return std::isfinite(reference2 + own2 + inherited2 + total2); }
@@ -21,7 +25,6 @@ void addOne(double d, double o, double r, DifferenceSums& sums) {
   sums.inherited2 += inherited * inherited;
   sums.total2 += total * total;
   sums.largestOwn = std::max(sums.largestOwn, std::fabs(own));
-  sums.largestTotal = std::max(sums.largestTotal, std::fabs(total));
   sums.mayFlush = sums.mayFlush || (d == 0 && o != 0);
 }
 
@@ -32,65 +35,87 @@ void addEach(const double* d, const double* o, const double* r, std::int64_t cou
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
-/// One vector of each sum. There are few enough of them for the registers.
-struct VectorSums {
-  Doubles reference2{}, own2{}, inherited2{}, total2{}, largestOwn{}, largestTotal{};
-  Words flushes{};
+#define SK_FOR_V4 [[gnu::target("arch=x86-64-v4")]]
 
-  SK_FOR_V3 void add(const double* d, const double* o, const double* r) {
-    Doubles device, given, reference;
-    std::memcpy(&device, d, sizeof device);
-    std::memcpy(&given, o, sizeof given);
-    std::memcpy(&reference, r, sizeof reference);
-    const Doubles own = device - given, inherited = given - reference, total = device - reference;
-    addProduct(reference, reference, reference2);
-    addProduct(own, own, own2);
-    addProduct(inherited, inherited, inherited2);
-    addProduct(total, total, total2);
-    raise(own, largestOwn);
-    raise(total, largestTotal);
-    flushes |= (device == 0) & (given != 0);
-  }
-  SK_FOR_V3 static void raise(const Doubles& difference, Doubles& largest) {
-    const Words magnitude = __builtin_bit_cast(Words, difference) & INT64_MAX;
-    const Doubles size = __builtin_bit_cast(Doubles, magnitude);
-    largest = size > largest ? size : largest;
-  }
-  SK_FOR_V3 static double sum(const Doubles& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
-  SK_FOR_V3 static double largest(const Doubles& x) {
-    return std::max(std::max(x[0], x[1]), std::max(x[2], x[3]));
-  }
-  SK_FOR_V3 DifferenceSums all() const {
-    return {.reference2 = sum(reference2),
-            .own2 = sum(own2),
-            .inherited2 = sum(inherited2),
-            .total2 = sum(total2),
-            .largestOwn = largest(largestOwn),
-            .largestTotal = largest(largestTotal),
-            .mayFlush = (flushes[0] | flushes[1] | flushes[2] | flushes[3]) != 0};
-  }
-};
+template <class Vector>
+double sumOf(const Vector& x) {
+  double values[sizeof x / sizeof(double)];
+  std::memcpy(values, &x, sizeof x);
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum;
+}
 
-SK_FOR_V3 DifferenceSums addVectors(const double* d, const double* o, const double* r, std::int64_t count) {
-  VectorSums vectors;
+template <class Vector>
+double largestOf(const Vector& x) {
+  double values[sizeof x / sizeof(double)];
+  std::memcpy(values, &x, sizeof x);
+  return *std::ranges::max_element(values);
+}
+
+/// The sums of vectors of eight doubles. GCC 12 warns about those functions of immintrin.h that have undefined lanes.
+SK_FOR_V4 DifferenceSums addVectorsOfEight(const double* d, const double* o, const double* r,
+                                           std::int64_t count) {
+  const __m512d zero = _mm512_setzero_pd();
+  __m512d reference2 = zero, own2 = zero, inherited2 = zero, total2 = zero, largestOwn = zero;
+  unsigned flushes = 0;
   std::int64_t i = 0;
-  for (; i + doublesPerVector <= count; i += doublesPerVector) vectors.add(d + i, o + i, r + i);
-  DifferenceSums sums = vectors.all();
+  for (; i + 8 <= count; i += 8) {
+    const __m512d device = _mm512_loadu_pd(d + i), given = _mm512_loadu_pd(o + i),
+                  reference = _mm512_loadu_pd(r + i);
+    const __m512d own = device - given, inherited = given - reference, total = device - reference;
+    reference2 = _mm512_fmadd_pd(reference, reference, reference2);
+    own2 = _mm512_fmadd_pd(own, own, own2);
+    inherited2 = _mm512_fmadd_pd(inherited, inherited, inherited2);
+    total2 = _mm512_fmadd_pd(total, total, total2);
+    largestOwn = _mm512_maskz_max_pd(0xFF, largestOwn, _mm512_abs_pd(own));
+    const __mmask8 zeros = _mm512_cmp_pd_mask(device, zero, _CMP_EQ_OQ);
+    flushes |= _mm512_mask_cmp_pd_mask(zeros, given, zero, _CMP_NEQ_UQ);
+  }
+  DifferenceSums sums{.reference2 = sumOf(reference2),
+                      .own2 = sumOf(own2),
+                      .inherited2 = sumOf(inherited2),
+                      .total2 = sumOf(total2),
+                      .largestOwn = largestOf(largestOwn),
+                      .mayFlush = flushes != 0};
+  addEach(d + i, o + i, r + i, count - i, sums);
+  return sums;
+}
+
+/// The sums of vectors of four doubles.
+SK_FOR_V3 DifferenceSums addVectorsOfFour(const double* d, const double* o, const double* r,
+                                          std::int64_t count) {
+  const __m256d zero = _mm256_setzero_pd(), sign = _mm256_set1_pd(-0.0);
+  __m256d reference2 = zero, own2 = zero, inherited2 = zero, total2 = zero, largestOwn = zero, flushes = zero;
+  std::int64_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const __m256d device = _mm256_loadu_pd(d + i), given = _mm256_loadu_pd(o + i),
+                  reference = _mm256_loadu_pd(r + i);
+    const __m256d own = _mm256_sub_pd(device, given), inherited = _mm256_sub_pd(given, reference),
+                  total = _mm256_sub_pd(device, reference);
+    reference2 = _mm256_fmadd_pd(reference, reference, reference2);
+    own2 = _mm256_fmadd_pd(own, own, own2);
+    inherited2 = _mm256_fmadd_pd(inherited, inherited, inherited2);
+    total2 = _mm256_fmadd_pd(total, total, total2);
+    largestOwn = _mm256_max_pd(largestOwn, _mm256_andnot_pd(sign, own));
+    const __m256d zeros = _mm256_cmp_pd(device, zero, _CMP_EQ_OQ);
+    flushes = _mm256_or_pd(flushes, _mm256_and_pd(zeros, _mm256_cmp_pd(given, zero, _CMP_NEQ_UQ)));
+  }
+  DifferenceSums sums{.reference2 = sumOf(reference2),
+                      .own2 = sumOf(own2),
+                      .inherited2 = sumOf(inherited2),
+                      .total2 = sumOf(total2),
+                      .largestOwn = largestOf(largestOwn),
+                      .mayFlush = _mm256_movemask_pd(flushes) != 0};
   addEach(d + i, o + i, r + i, count - i, sums);
   return sums;
 }
 
 SK_FOR_V3 void widenVectors(const float* from, std::int64_t count, double* to) {
   std::int64_t i = 0;
-  for (; i + doublesPerVector <= count; i += doublesPerVector) {
-    Doubles wide;
-    widen(from + i, wide);
-    std::memcpy(to + i, &wide, sizeof wide);
-  }
+  for (; i + 4 <= count; i += 4) _mm256_storeu_pd(to + i, _mm256_cvtps_pd(_mm_loadu_ps(from + i)));
   for (; i < count; ++i) to[i] = from[i];
 }
-
-bool hasVectors() { return native::levelOfHardware() >= native::Level::V3; }
 
 #endif
 
@@ -98,7 +123,11 @@ bool hasVectors() { return native::levelOfHardware() >= native::Level::V3; }
 
 DifferenceSums addDifferences(const double* d, const double* o, const double* r, std::int64_t count) {
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (hasVectors()) return addVectors(d, o, r, count);
+  switch (native::levelOfHardware()) {
+    case native::Level::V4: return addVectorsOfEight(d, o, r, count);
+    case native::Level::V3: return addVectorsOfFour(d, o, r, count);
+    case native::Level::Base: break;
+  }
 #endif
   DifferenceSums sums;
   addEach(d, o, r, count, sums);
@@ -107,7 +136,7 @@ DifferenceSums addDifferences(const double* d, const double* o, const double* r,
 
 void widenFloats(const float* from, std::int64_t count, double* to) {
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (hasVectors()) return widenVectors(from, count, to);
+  if (native::levelOfHardware() >= native::Level::V3) return widenVectors(from, count, to);
 #endif
   std::copy_n(from, count, to);
 }

@@ -13,7 +13,7 @@ struct DifferenceSums {
   double own2 = 0;  ///< sum of (d - o)^2
   double inherited2 = 0;  ///< sum of (o - r)^2
   double total2 = 0;  ///< sum of (d - r)^2
-  double largestOwn = 0, largestTotal = 0;  ///< largest |d - o| and |d - r|
+  double largestOwn = 0;  ///< largest |d - o|
   bool mayFlush = false;  ///< somewhere, d is 0 and o is not
 
   /// False if an element of an array is NaN or infinite, or if sums overflow: then nothing else is valid.

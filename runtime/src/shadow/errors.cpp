@@ -214,7 +214,7 @@ void addReals(const Triple& block, Compared& all) {
     errors.ownInTotal += sums.ownInTotal();
     worst = sums.largestOwn;
     errors.isSame =
-        errors.isSame && sums.largestTotal == 0 &&
+        errors.isSame && sums.total2 == 0 &&
         std::memcmp(block.d, block.r, static_cast<std::size_t>(block.count) * sizeof(double)) == 0;
   }
   if (worst > all.worst.error) all.worst = {worst, block.first, block.count, block.component};
@@ -314,10 +314,12 @@ void addRange(const ComparedColumns& columns, native::Range range, Compared& all
 
 /// The first element of a block with its largest own error.
 Worst elementOf(const WorstBlock& worst, const Column& d, const Column& o) {
-  for (std::int64_t i = worst.first; i < worst.first + worst.count; ++i) {
-    if (std::fabs(d.at(i) - o.at(i)) == worst.error) return {worst.error, i, worst.component};
-  }
-  return {worst.error, worst.first, worst.component};
+  Block roomD, roomO;
+  const double* const device = doublesOf(d, worst.first, worst.count, roomD);
+  const double* const own = doublesOf(o, worst.first, worst.count, roomO);
+  std::int64_t i = 0;
+  while (i < worst.count - 1 && std::fabs(device[i] - own[i]) != worst.error) ++i;
+  return {worst.error, worst.first + i, worst.component};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,15 +23,16 @@
 namespace sk {
 
 std::unique_ptr<NativeStream> TemporaryStreams::take(const program::Element& element, const Shape& shape) {
-  const auto found = std::ranges::find_if(streams_, [&](const std::unique_ptr<NativeStream>& stream) {
+  // the one that was given back last is the likeliest to be in a cache
+  const auto found = std::find_if(streams_.rbegin(), streams_.rend(), [&](const auto& stream) {
     return stream->element == &element && stream->shape == shape;
   });
   std::unique_ptr<NativeStream> stream;
-  if (found == streams_.end()) {
+  if (found == streams_.rend()) {
     stream = std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
   } else {
     stream = std::move(*found);
-    streams_.erase(found);
+    streams_.erase(std::next(found).base());
     free_ -= bytesOf(*stream);
   }
   countTaken(bytesOf(*stream));
