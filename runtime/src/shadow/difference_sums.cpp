@@ -111,12 +111,6 @@ SK_FOR_V3 DifferenceSums addVectorsOfFour(const double* d, const double* o, cons
   return sums;
 }
 
-SK_FOR_V3 void widenVectors(const float* from, std::int64_t count, double* to) {
-  std::int64_t i = 0;
-  for (; i + 4 <= count; i += 4) _mm256_storeu_pd(to + i, _mm256_cvtps_pd(_mm_loadu_ps(from + i)));
-  for (; i < count; ++i) to[i] = from[i];
-}
-
 #endif
 
 }  // namespace
@@ -132,13 +126,6 @@ DifferenceSums addDifferences(const double* d, const double* o, const double* r,
   DifferenceSums sums;
   addEach(d, o, r, count, sums);
   return sums;
-}
-
-void widenFloats(const float* from, std::int64_t count, double* to) {
-#if defined(__x86_64__) && defined(__GNUC__)
-  if (native::levelOfHardware() >= native::Level::V3) return widenVectors(from, count, to);
-#endif
-  std::copy_n(from, count, to);
 }
 
 }  // namespace sk::shadow

@@ -25,7 +25,4 @@ struct DifferenceSums {
 /// The sums over `count` elements. Their rounding depends on the CPU.
 DifferenceSums addDifferences(const double* d, const double* o, const double* r, std::int64_t count);
 
-/// Converts floats to doubles.
-void widenFloats(const float* from, std::int64_t count, double* to);
-
 }  // namespace sk::shadow

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "native/convert_floats.hpp"
 #include "shadow/difference_sums.hpp"
 #include "sk/narrow.hpp"
 #include "sk/native/parallel.hpp"

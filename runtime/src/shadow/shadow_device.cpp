@@ -99,6 +99,7 @@ ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorde
       recorder_(recorder),
       reference_(std::make_unique<NativeDevice>(RealType::Double)),
       temporaries_(*reference_, *this) {
+  reference_->isSilent = true;  // the device prints
   interposed = this;
   limits = primary_->limits;
   memoryLimit = primary_->memoryLimit;
@@ -146,6 +147,7 @@ NativeDevice& ShadowDevice::ownReference(const program::Kernel& kernel) {
   }
   if (!quad_) {
     quad_ = std::make_unique<NativeDevice>(RealType::Quad);
+    quad_->isSilent = true;
     quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_, *this);
   }
   return *quad_;
