@@ -39,7 +39,10 @@ void FunctionCode::write(const Print& n) {
     types.push_back(values->getType()->getScalarType());
     b.CreateStore(values, lanes.back());
   }
-  llvm::Value* const mask = b.CreateZExt(b.CreateBitCast(maskOf(n.mask), b.getIntNTy(l.count())), l.int64());
+  llvm::Value* const active =
+      b.CreateZExt(b.CreateBitCast(maskOf(n.mask), b.getIntNTy(l.count())), l.int64());
+  llvm::Value* const mask =
+      b.CreateSelect(b.CreateIsNotNull(k.streams.isSilent()), l.integer(l.int64(), 0), active);
   llvm::Value* const format = b.CreateGlobalStringPtr(n.format);
   llvm::BasicBlock* const before = b.GetInsertBlock();
   llvm::BasicBlock* const one = newBlock("print");

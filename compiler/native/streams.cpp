@@ -72,6 +72,7 @@ llvm::Value* Streams::first(std::size_t dimension) {
   if (dimension != 1 || rowNumber_ == nullptr) return index;
   return emitIn(rowPrologue_, [&] { return l.b.CreateAdd(index, rowNumber_, "", true, true); });
 }
+llvm::Value* Streams::isSilent() { return frameField(offsetof(Frame, isSilent), l.int64()); }
 llvm::Value* Streams::tables() { return frameField(offsetof(Frame, tables), l.b.getPtrTy()); }
 
 llvm::Value* Streams::argumentField(std::uint32_t param, std::size_t offset, llvm::Type* type) {

@@ -78,6 +78,8 @@ class Streams {
   Parts border(std::uint32_t param);
   /// The address of the call's tables, one sk::native::Table per tabulated function; null if it has none.
   llvm::Value* tables();
+  /// 1 if the call prints nothing, else 0.
+  llvm::Value* isSilent();
 
  private:
   llvm::Value* inPrologue(const std::function<llvm::Value*()>& emit) { return emitIn(prologue_, emit); }

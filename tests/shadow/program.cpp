@@ -19,6 +19,7 @@
 
 #include "everything.sk.hpp"
 #include "faults.sk.hpp"
+#include "precise.sk.hpp"
 
 namespace {
 
@@ -227,25 +228,124 @@ void runEverything() {
   std::printf("sum %a\n", static_cast<double>(e::sum.with({.accumulate = sk::Accumulate::Exact})(weight)));
 }
 
-/// Prints the own error of each call, relative to the norm of the exact results.
+/// Advances u to v, and prints the own error of the call, relative to the norm of the exact results.
+void advanceAndPrint(const Field& u, Field& v) {
+  const std::vector<float> before = u.read();
+  faults::advance(0.01F, u, v);
+  const std::vector<float> after = v.read();
+  double squares = 0, norm = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double x = before[k], exact = x + static_cast<double>(0.01F) * (x * (1 - x));
+    squares += (after[k] - exact) * (after[k] - exact);
+    norm += exact * exact;
+  }
+  std::printf("%.12g\n", std::sqrt(squares / norm));
+}
+
 void runReplay() {
   sk::Device device;
   Field u = device.stream<float>({size}, sk::Storage::Default, "u"),
         v = device.stream<float>({size}, sk::Storage::Default, "v");
   faults::ramp(0.1F, 0.9F, u);
   for (int i = 0; i < 20; ++i) {
-    const std::vector<float> before = u.read();
-    faults::advance(0.01F, u, v);
-    const std::vector<float> after = v.read();
-    double squares = 0, norm = 0;
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      const double x = before[k], exact = x + static_cast<double>(0.01F) * (x * (1 - x));
-      squares += (after[k] - exact) * (after[k] - exact);
-      norm += exact * exact;
-    }
-    std::printf("%.12g\n", std::sqrt(squares / norm));
+    advanceAndPrint(u, v);
     std::swap(u, v);
   }
+}
+
+/// The same after each way in which elements change: the reference must compute with those that the device has now.
+void runChanges() {
+  sk::Device device;
+  Field u = device.stream<float>({size}), v = device.stream<float>({size}), w = device.stream<float>({size});
+  auto key = device.stream<float>({size});
+  const auto advanceTwice = [&] {
+    advanceAndPrint(u, v);
+    advanceAndPrint(v, u);  // in whose error the first call's is
+  };
+  faults::ramp(0.1F, 0.9F, u);
+  advanceTwice();
+  std::vector<float> numbers(size);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = 0.2F + 0.0007F * static_cast<float>(i * 37 % size);
+  u.write(numbers);
+  advanceTwice();
+  u.domain({100}, {300}).write(std::vector<float>(200, 0.7F));
+  advanceTwice();
+  v.fill(0.4F);
+  v.domain({7}, {size}).copyTo(u.domain({0}, {size - 7}));
+  advanceTwice();
+  faults::gain.with({.box = {{250}, {750}}})(0.3F, v, u);
+  advanceTwice();
+  faults::gain(0.3F, v.domain({0}, {400}), u.domain({500}, {900}));
+  advanceTwice();
+  faults::smooth(u, u);
+  advanceTwice();
+  faults::ramp(1, 0.1F, key);
+  sk::sort(key, u);
+  advanceTwice();
+  v.copyTo(w);
+  std::swap(u, w);
+  advanceTwice();
+  sk::Loop loop = device.record([&] { faults::gain(0.5F, u, u); });
+  loop.repeat(3);
+  advanceTwice();
+}
+
+/// The most memory that this process has had, in bytes.
+std::int64_t peakMemory() {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("VmHWM:")) return 1024 * std::atoll(line.c_str() + 6);
+  }
+  return 0;
+}
+
+/// Calls on many streams of different sizes. Prints the bytes of all streams in doubles, of the largest one, and of the process.
+void runMemory() {
+  sk::Device device;
+  std::vector<Field> streams;
+  std::int64_t all = 0, largest = 0;
+  for (int i = 0; i < 8; ++i) {
+    const std::int64_t count = (1 << 20) + 1000 * i;
+    for (int k = 0; k < 2; ++k) streams.push_back(device.stream<float>({count}));
+    all += 2 * 8 * count;
+    largest = 8 * count;
+  }
+  for (std::size_t i = 0; i < streams.size(); i += 2) faults::ramp(0.1F, 0.9F, streams[i]);
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t i = 0; i < streams.size(); i += 2) {
+      faults::advance(0.01F, streams[i], streams[i + 1]);
+      std::swap(streams[i], streams[i + 1]);
+    }
+  }
+  std::printf("%lld %lld %lld\n", static_cast<long long>(all), static_cast<long long>(largest),
+              static_cast<long long>(peakMemory()));
+}
+
+#if defined(__SIZEOF_FLOAT128__)
+using Quad = __float128;
+#else
+using Quad = long double;  // of 128 bits there
+#endif
+
+/// Prints the own error of a call in doubles, found with numbers that have twice as many digits. It is relative to the results of
+/// the reference, which are the device's.
+void runPrecise() {
+  sk::Device device;
+  auto x = device.stream<double>({size}), r = device.stream<double>({size});
+  std::vector<double> numbers(size);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = 0.001 * static_cast<double>(i * i % 997);
+  x.write(numbers);
+  precise::spread(x, r);
+  const std::vector<double> after = r.read();
+  double squares = 0, norm = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const Quad m = static_cast<Quad>(numbers[i]) + 1000000000, half = 0.5;
+    const auto exact = static_cast<double>(m * m - (m - half) * (m + half));
+    squares += (after[i] - exact) * (after[i] - exact);
+    norm += after[i] * after[i];
+  }
+  std::printf("%.12g\n", std::sqrt(squares / norm));
 }
 
 void runFine() {
@@ -307,7 +407,8 @@ const std::map<std::string, std::function<void()>> programs = {
     {"sum", runSum},           {"push", runPush},         {"everything", runEverything},
     {"replay", runReplay},     {"fine", runFine},         {"exit", runExit},
     {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
-    {"nothing", runNothing},   {"devices", runDevices}};
+    {"nothing", runNothing},   {"devices", runDevices},   {"changes", runChanges},
+    {"memory", runMemory},     {"precise", runPrecise}};
 
 }  // namespace
 

@@ -84,14 +84,44 @@ check(report["calls"] == report["followed"] and not report["notes"],
 worst = max((result["error"]["largest"] for result in report["results"]), default=1)
 check(worst < 2e-3, f"everything: {report['results']}")  # halves
 
-# The own error of each call is what the program finds by itself.
-done, report = run("replay")
-expected = [float(line) for line in done.stdout.split()]
-kernel = next(k for k in report["kernels"] if k["name"] == "faults::advance")
-found = [point[1] for point in kernel["outputs"][0]["points"]]
-check(len(found) == len(expected), f"replay: {len(found)} points for {len(expected)} calls")
-for call, (a, b) in enumerate(zip(found, expected)):
-    check(math.isclose(a, b, rel_tol=1e-6), f"replay: the own error of call {call} is {a}, not {b}")
+
+def own_errors(report, name):
+    """The own error of each call of a kernel."""
+    kernel = next(k for k in report["kernels"] if k["name"] == name)
+    return [point[1] for point in kernel["outputs"][0]["points"]]
+
+
+# The own error of each call is what the program finds by itself, whatever has changed the elements that the call reads.
+for name in ("replay", "changes"):
+    done, report = run(name)
+    expected = [float(line) for line in done.stdout.split()]
+    found = own_errors(report, "faults::advance")
+    check(done.returncode == 0 and not report["notes"], f"{name}: {done.stderr} {report['notes']}")
+    check(len(found) == len(expected), f"{name}: {len(found)} points for {len(expected)} calls")
+    for call, (a, b) in enumerate(zip(found, expected)):
+        check(math.isclose(a, b, rel_tol=1e-6), f"{name}: the own error of call {call} is {a}, not {b}")
+
+# Doubles that are wrong in the same way on the reference: only quadruple precision shows it.
+if device == "native":
+    done, report = run("precise")
+    check(own_errors(report, "precise::spread") == [0], f"precise: {own_errors(report, 'precise::spread')} in double")
+    done, report = run("precise", shadow="report.html,quad=precise::*")
+    found, expected = own_errors(report, "precise::spread"), float(done.stdout)
+    check(expected > 0.1 and math.isclose(found[0], expected, rel_tol=1e-6), f"precise: {found}, not {expected}")
+    check(not report["notes"], f"precise: {report['notes']}")
+    done, report = run("replay", shadow="report.html,quad=faults::advance")
+    check(any("faults::advance" in note and "--quad" in note for note in report["notes"]), f"quad: {report['notes']}")
+
+# The reference and all copies for it take at most twice the doubles of the program's streams, and what one call needs at once:
+# its inputs, and the results of the device and of the reference. A tenth is for the heap and the report.
+if device == "native":
+    done, report = run("memory", shadow=None)
+    plain = int(done.stdout.split()[2])
+    done, report = run("memory")
+    doubles, largest, used = (int(word) for word in done.stdout.split())
+    most = 2 * doubles + 3 * largest
+    check(used - plain <= 1.1 * most, f"memory: {(used - plain) / doubles:.2f} times the doubles, allowed {1.1 * most / doubles:.2f}")
+    check(used - plain >= doubles, f"memory: {used - plain} bytes are less than the reference takes")
 
 # Ways to end.
 for name, status in {"exit": 3, "abort": -6, "fork": 0}.items():

@@ -66,6 +66,7 @@ struct Call {
   std::span<const Table> tables = {};  ///< one per tabulated function; empty if these are computed
   /// The elements that a kernel computes, or a reduction folds; nullopt stands for the whole domain.
   std::optional<Part> part = std::nullopt;
+  bool isSilent = false;  ///< printf in the kernel prints nothing
 
   Part computed() const { return part.value_or(Part{.extent = domain}); }
 };

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "native/convert_floats.hpp"
 #include "native/scalars.hpp"
 #include "sk/narrow.hpp"
 #include "sk/native/parallel.hpp"
@@ -75,6 +76,13 @@ void move(const Values<const std::byte>& from, const Values<std::byte>& to, std:
       default: return copyStrided<16>(from.first, from.stride, to.first, to.stride, count);
     }
   }
+  const bool areDense = from.stride == from.bytes && to.stride == to.bytes;
+  if (areDense && from.bytes == sizeof(float) && to.bytes == sizeof(double))
+    return widenFloats(reinterpret_cast<const float*>(from.first), count,
+                       reinterpret_cast<double*>(to.first));
+  if (areDense && from.bytes == sizeof(double) && to.bytes == sizeof(float) && !areRoundedAgain)
+    return narrowDoubles(reinterpret_cast<const double*>(from.first), count,
+                         reinterpret_cast<float*>(to.first));
   if (areRoundedAgain && from.bytes == sizeof(double) && to.bytes == sizeof(float))
     return convertToOdd<double>(from.first, from.stride, to.first, to.stride, count);
   switch (from.bytes) {
@@ -274,7 +282,8 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
       zeroArrays_(memory),
       frame_{.arguments = nullptr,
              .domain = {call.domain[0], call.domain[1], call.domain[2], call.domain[3]},
-             .tables = call.tables.empty() ? nullptr : call.tables.data()} {
+             .tables = call.tables.empty() ? nullptr : call.tables.data(),
+             .isSilent = call.isSilent ? 1 : 0} {
   arguments_.reserve(call.operands.size());
   for (std::size_t i = 0; i < call.operands.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];

@@ -267,7 +267,8 @@ void NativeDevice::run(const ResolvedCall& call) {
                     call.options.box);
   {
     const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
-    const native::Call nativeCall = operands.call();
+    native::Call nativeCall = operands.call();
+    nativeCall.isSilent = isSilent;
     operands.begin();
     runCode(kernel, nativeCall, codeChoice(real, call.options));
   }
@@ -287,7 +288,9 @@ class PreparedRun final : public RecordedCall {
         choice_(codeChoice(real, call.options)),
         operands_(real, kernel, call.arguments, call.domain, std::move(tables), false, call.options.box),
         call_(operands_.call()),
-        code_(kernel, choice_, operands_.readsValuesInStreams()) {}
+        code_(kernel, choice_, operands_.readsValuesInStreams()) {
+    call_.isSilent = device.isSilent;
+  }
 
   bool mayRun() { return operands_.mayRunAgain(); }
 
@@ -308,7 +311,7 @@ class PreparedRun final : public RecordedCall {
   const Kernel& kernel_;
   const CodeChoice choice_;
   Operands operands_;
-  const native::Call call_;
+  native::Call call_;
   RepeatedCode code_;
 };
 

@@ -15,6 +15,8 @@ class NativeDevice final : public DeviceState {
   explicit NativeDevice(RealType real);
   ~NativeDevice() override;
 
+  bool isSilent = false;  ///< printf in kernels prints nothing
+
   RealType real() const { return real_; }
   /// Adds to the bytes of streams in the trace.
   void countBytes(std::int64_t change) noexcept {

@@ -467,7 +467,7 @@ void runCode(const Kernel& kernel, const native::Call& call, const CodeChoice& c
 struct RepeatedCode::State {
   State(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
       : operands(call.operands.begin(), call.operands.end()),
-        code(kernel, {operands, call.domain, call.tables, call.part}, choice) {
+        code(kernel, {operands, call.domain, call.tables, call.part, call.isSilent}, choice) {
     for (const native::Operand& operand : operands) {
       arrays.push_back(operand.components.data());
       arrays.insert(arrays.end(), operand.components.begin(), operand.components.end());

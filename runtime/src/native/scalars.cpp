@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "native/convert_floats.hpp"
+
 namespace sk {
 
 namespace {
@@ -40,6 +42,10 @@ void copyScalars(const Steps& from, ScalarBytes bytes, std::byte* to, std::int64
     if (count > 0)
       std::memcpy(to, from.array + from.index * bytes.held, static_cast<std::size_t>(count) * bytes.held);
     return;
+  }
+  if (from.stride == 1 && bytes.held == sizeof(float) && bytes.read == sizeof(double)) {
+    const auto* const floats = reinterpret_cast<const float*>(from.array) + from.index;
+    return widenFloats(floats, count, reinterpret_cast<double*>(to));
   }
   withTypes(bytes, [&]<class Held, class Read> {
     if (from.stride == 1) {

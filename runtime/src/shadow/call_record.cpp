@@ -94,6 +94,16 @@ std::int64_t numberIn(const Shape& input, const Shape& domain, std::int64_t numb
   return result;
 }
 
+/// The number in the stream of an element of a region.
+std::int64_t numberInStream(const AffineRegion& region, std::int64_t number) {
+  std::int64_t result = region.first;
+  for (std::size_t d = 0; d < region.extent.size(); ++d) {
+    result += number % region.extent[d] * region.stride[d];
+    number /= region.extent[d];
+  }
+  return result;
+}
+
 void addUniform(std::vector<shadow::Input>& inputs, const program::Parameter& parameter, const void* value) {
   int component = 0;
   for (const program::Field& field : parameter.element->fields) {
@@ -121,6 +131,7 @@ void CallFollower::compareAll() {
   try {
     for (Written& written : written_) compareOutput(written);
     if (isWorst_ && !device_.recorder().options().inputs.empty()) keepInputs();
+    keepElements();
     Recorder::Access report(device_.recorder());
     KernelRecord& record = recordOf(*report, kernel_);
     if (amplification_ > 0) record.amplification.add(amplification_);
@@ -133,10 +144,29 @@ void CallFollower::compareAll() {
   comparisonSeconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Keeps the converted elements of the device, which the next call may read.
+void CallFollower::keepElements() {
+  for (Written& written : written_) {
+    if (written.stream == nullptr || written.device == nullptr) continue;
+    const StreamRegion region = regionOf(written);
+    if (isAllInOrder(region)) {
+      written.stream->setSame(written.isSame);
+      if (!written.isSame) written.stream->keepConverted(std::move(written.device));
+      continue;
+    }
+    if (written.before != nullptr) written.stream->keepConverted(std::move(written.before));
+    if (NativeStream* const all = written.stream->converted()) {
+      StreamRegion part = region;
+      part.stream = all;
+      copyElements(detail::wholeRegion(written.device.get()), part);
+    }
+  }
+}
+
 /// Keeps what the call has read, for sk accuracy.
 void CallFollower::keepInputs() {
   std::int64_t bytes = 0;
-  for (const Read& read : read_) bytes += read.device->shape.size() * read.stream->element->size;
+  for (const Read& read : read_) bytes += read.device.shape.size() * read.stream->element->size;
   const std::string name(call_.kernel.name);
   const bool areRecordable = std::ranges::all_of(
       call_.kernel.parameters,
@@ -158,12 +188,12 @@ void CallFollower::keepInputs() {
     }
     const auto read = std::ranges::find(read_, i, &Read::argument);
     if (read != read_.end()) {
-      std::vector<std::byte> elements(static_cast<std::size_t>(read->device->shape.size()) *
+      const StreamRegion& region = read->device;
+      std::vector<std::byte> elements(static_cast<std::size_t>(region.shape.size()) *
                                       read->stream->element->size);
-      if (!elements.empty()) read->device->read(detail::wholeRegion(read->device.get()), elements.data());
+      if (!elements.empty()) region.stream->read(region, elements.data());
       const bool isValue = parameter.role == Role::Uniform;
-      inputs.add(parameter.name, *read->stream->element, isValue ? Shape{} : read->device->shape,
-                 elements.data());
+      inputs.add(parameter.name, *read->stream->element, isValue ? Shape{} : region.shape, elements.data());
     } else if (argument.value != nullptr) {
       const bool hasEnds = parameter.role == Role::Iterator;
       inputs.add(parameter.name, *parameter.element, hasEnds ? Shape{2} : Shape{},
@@ -173,10 +203,19 @@ void CallFollower::keepInputs() {
   device_.recorder().keepInputs(name, std::move(inputs));
 }
 
+const NativeStream* CallFollower::ownOf(const Written& written) const {
+  if (!hasOwn_) return nullptr;
+  if (!isRunOnce_) return written.own.get();
+  if (reference_ != nullptr) return reference_;
+  return written.stream != nullptr ? written.stream->held() : written.total.get();
+}
+
 void CallFollower::compareOutput(Written& written) {
   TemporaryStreams& temporaries = device_.temporaries();
   std::unique_ptr<NativeStream> copied;
   NativeStream* reference = written.total.get();
+  const NativeStream* source = nullptr;  // where the device's elements are, in order
+  reference_ = nullptr;
   if (written.stream == nullptr) {
     written.device = temporaries.take(*parameterOf(written).element, Shape{1});
     const auto accumulators =
@@ -190,17 +229,19 @@ void CallFollower::compareOutput(Written& written) {
     reference = written.stream->held();
     if (reference->shape.size() != written.stream->shape.size()) {  // another number of elements was pushed
       OutputErrors errors;
-      reference_ = nullptr;
       errors.integers = 1;
       errors.decisions.add(0, 0);
-      if (hasOwn_ && written.own->shape.size() != written.stream->shape.size()) errors.ownDecisions.add(0, 0);
+      const NativeStream* const own = ownOf(written);
+      if (own != nullptr && own->shape.size() != written.stream->shape.size()) errors.ownDecisions.add(0, 0);
       recordErrors(written, errors, hasOwn_);
       written.stream->goStale(true);
       return;
     }
     if (region.shape.size() == 0) return;
     written.device = temporaries.take(*written.stream->element, region.shape);
-    copyElements(written.stream->innerOf(region), detail::wholeRegion(written.device.get()));
+    const StreamRegion inner = written.stream->innerOf(region);
+    source = isAllInOrder(inner) ? dynamic_cast<const NativeStream*>(inner.stream) : nullptr;
+    if (source == nullptr) copyElements(inner, detail::wholeRegion(written.device.get()));
     StreamRegion there = region;
     there.stream = reference;
     if (!isAllInOrder(there)) {
@@ -209,13 +250,14 @@ void CallFollower::compareOutput(Written& written) {
       reference = copied.get();
     }
   }
-  const bool hasOwn = hasOwn_ && written.own->shape.size() == written.device->shape.size();
-  const OutputErrors errors =
-      shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
   reference_ = reference;
+  const NativeStream* const own = ownOf(written);
+  const bool hasOwn = own != nullptr && own->shape.size() == written.device->shape.size();
+  const OutputErrors errors = shadow::compare(*written.device, source, hasOwn ? own : nullptr, *reference);
+  written.isSame = errors.isSame;
   if (hasOwn && written.stream != nullptr && written.stream->storage == Storage::Half &&
       errors.reference2 > 0) {
-    const double stored = std::sqrt(shadow::squaresOfHalfRounding(*written.own) / errors.reference2);
+    const double stored = std::sqrt(shadow::squaresOfHalfRounding(*own) / errors.reference2);
     Recorder::Access report(device_.recorder());
     recordOf(*report, kernel_).storage.add(stored);
   }
@@ -320,23 +362,23 @@ StreamErrors CallFollower::errorsAfter(const Written& written, const OutputError
 ElementRecord CallFollower::elementOf(const Written& written, std::int64_t element, int component) const {
   const program::Parameter& parameter = parameterOf(written);
   const program::Element& type = written.stream != nullptr ? *written.stream->element : *parameter.element;
+  const NativeStream* const own = ownOf(written);
   ElementRecord record;
   record.call = number_;
   record.output = std::string(parameter.name) + componentName(type, component);
   record.isReal = shadow::isReal(scalarOf(type, component));
   if (written.device == nullptr) {  // another number of elements was pushed
-    const bool isOwn = hasOwn_ && written.own->shape.size() != written.stream->shape.size();
+    const bool isOwn = own != nullptr && own->shape.size() != written.stream->shape.size();
     record.output += " (number of elements)";
     record.isReal = false;
     record.device = static_cast<double>(written.stream->shape.size());
-    record.reference = static_cast<double>((isOwn ? *written.own : *written.stream->held()).shape.size());
+    record.reference = static_cast<double>((isOwn ? *own : *written.stream->held()).shape.size());
     return record;
   }
   const Shape& shape = written.device->shape;
   record.device = shadow::valueAt(*written.device, component, element);
-  record.reference = written.own != nullptr && written.own->shape.size() == shape.size() && hasOwn_
-                         ? shadow::valueAt(*written.own, component, element)
-                         : NAN;
+  record.reference =
+      own != nullptr && own->shape.size() == shape.size() ? shadow::valueAt(*own, component, element) : NAN;
   if (written.stream == nullptr) return record;
   record.index = indexIn(shape, element);
   const StreamRegion region = regionOf(written);
@@ -349,14 +391,15 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
     if (isValue && call_.arguments[i].value != nullptr)
       addUniform(record.inputs, given, call_.arguments[i].value);
     const auto read = std::ranges::find(read_, i, &Read::argument);
-    if (read == read_.end() || read->device == nullptr) continue;
-    const std::int64_t number = numberIn(read->device->shape, shape, element);
+    if (read == read_.end() || read->device.stream == nullptr) continue;
+    const std::int64_t number = numberIn(read->device.shape, shape, element);
     if (number < 0) continue;
-    for (std::size_t c = 0; c < read->device->components.types().size(); ++c) {
+    const NativeStream& elements = nativeStream(read->device);
+    for (std::size_t c = 0; c < elements.components.types().size(); ++c) {
       const int of = static_cast<int>(c);
       record.inputs.push_back({std::string(given.name) + componentName(*read->stream->element, of),
-                               shadow::valueAt(*read->device, of, number),
-                               shadow::isReal(read->device->components.types()[c].scalar)});
+                               shadow::valueAt(elements, of, numberInStream(affine(read->device), number)),
+                               shadow::isReal(elements.components.types()[c].scalar)});
     }
   }
   return record;
@@ -403,10 +446,12 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
 /// Whether the call has read such a value, which the host may have written.
 bool CallFollower::areRead(ExceptionRecord::Kind kind) const {
   for (const Read& read : read_) {
-    if (read.device == nullptr || kind == Kind::Flush) continue;
-    for (std::size_t c = 0; c < read.device->components.types().size(); ++c) {
-      for (std::int64_t i = 0; i < read.device->shape.size(); ++i) {
-        const double value = shadow::valueAt(*read.device, static_cast<int>(c), i);
+    if (read.device.stream == nullptr || kind == Kind::Flush) continue;
+    const NativeStream& elements = nativeStream(read.device);
+    const AffineRegion region = affine(read.device);
+    for (std::size_t c = 0; c < elements.components.types().size(); ++c) {
+      for (std::int64_t i = 0; i < read.device.shape.size(); ++i) {
+        const double value = shadow::valueAt(elements, static_cast<int>(c), numberInStream(region, i));
         if (kind == Kind::Nan ? std::isnan(value) : std::isinf(value)) return true;
       }
     }
@@ -434,8 +479,9 @@ void CallFollower::recordDecisions(const Written& written, const OutputErrors& e
   } else if (errors.decisions.count > 0) {
     add(errors.decisions.count, errors.decisions.first, errors.decisions.component, true);
   }
-  if (errors.own.element < 0 || written.own == nullptr) return;
-  if (isJump(errors, shadow::valueAt(*written.own, errors.own.component, errors.own.element)))
+  const NativeStream* const own = ownOf(written);
+  if (errors.own.element < 0 || own == nullptr) return;
+  if (isJump(errors, shadow::valueAt(*own, errors.own.component, errors.own.element)))
     add(1, errors.own.element, errors.own.component, false);
 }
 

@@ -54,6 +54,13 @@ bool holdsOnlyFloats(const program::Element& element) {
 
 }  // namespace
 
+std::int64_t bytesOf(const NativeStream& stream) {
+  std::int64_t bytes = 0;
+  for (const ComponentType& component : stream.components.types())
+    bytes += stream.shape.size() * static_cast<std::int64_t>(component.storedBytes);
+  return bytes;
+}
+
 bool isAllInOrder(const StreamRegion& region) {
   if (region.shape.size() != region.stream->shape.size()) return false;
   const AffineRegion all = affine(region), dense = denseLike(all, 0);

@@ -3,9 +3,14 @@
 // Copies elements between a device and native streams, without a loss.
 #pragma once
 
+#include <cstdint>
+
 #include "native/native_stream.hpp"
 
 namespace sk {
+
+/// The bytes of a stream's elements.
+std::int64_t bytesOf(const NativeStream& stream);
 
 /// Whether a region has all elements of its stream, in order.
 bool isAllInOrder(const StreamRegion& region);

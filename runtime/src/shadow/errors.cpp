@@ -7,7 +7,11 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <optional>
+#include <vector>
 
+#include "native/convert_floats.hpp"
+#include "shadow/difference_sums.hpp"
 #include "sk/narrow.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/native/quad_type.hpp"
@@ -23,8 +27,6 @@ void OutputErrors::add(const OutputErrors& other) {
   inherited2 += other.inherited2;
   total2 += other.total2;
   ownInTotal += other.ownInTotal;
-  own.add(other.own);
-  total.add(other.total);
   nans.add(other.nans);
   infinities.add(other.infinities);
   newNans.add(other.newNans);
@@ -35,6 +37,7 @@ void OutputErrors::add(const OutputErrors& other) {
   decisions.add(other.decisions);
   integerReference2 += other.integerReference2;
   integerTotal2 += other.integerTotal2;
+  isSame = isSame && other.isSame;
 }
 
 double OutputErrors::relativeIntegers() const {
@@ -136,7 +139,7 @@ const double* doublesOf(const Column& column, std::int64_t first, std::int64_t c
     return static_cast<const double*>(column.array) + first;
   if (column.bytes == sizeof(float) && column.scalar == Scalar::Float) {
     const auto* const floats = static_cast<const float*>(column.array) + first;
-    std::copy_n(floats, count, room.begin());
+    widenFloats(floats, count, room.data());
     return room.data();
   }
   for (std::int64_t i = 0; i < count; ++i) room[static_cast<std::size_t>(i)] = column.at(first + i);
@@ -152,8 +155,31 @@ struct Triple {
   int component;
 };
 
+/// The block with the largest own error so far. Which of its elements has it, is found out once at the end.
+struct WorstBlock {
+  double error = 0;
+  std::int64_t first = 0, count = 0;
+  int component = 0;
+
+  void add(const WorstBlock& other) {
+    const bool isEarlier =
+        other.component < component || (other.component == component && other.first < first);
+    if (other.error > error || (other.error == error && error > 0 && isEarlier)) *this = other;
+  }
+};
+
+struct Compared {
+  OutputErrors errors;
+  WorstBlock worst;
+
+  void add(const Compared& other) {
+    errors.add(other.errors);
+    worst.add(other.worst);
+  }
+};
+
 /// Adds what is at one index; anything may be NaN.
-void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors) {
+void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors, double& worst) {
   const double d = block.d[i], o = block.o[i], r = block.r[i];
   const std::int64_t element = block.first + i;
   if (std::isnan(d)) errors.nans.add(element, block.component);
@@ -168,56 +194,32 @@ void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors) {
   errors.inherited2 += inherited * inherited;
   errors.total2 += total * total;
   errors.ownInTotal += own * total;
-  errors.own.add(std::fabs(own), element, block.component);
-  errors.total.add(std::fabs(total), element, block.component);
+  worst = std::max(worst, std::fabs(own));
 }
 
 constexpr double leastNormal = std::numeric_limits<float>::min();
 
-void addReals(const Triple& block, OutputErrors& errors) {
-  constexpr std::int64_t lanes = 4;
-  double reference[lanes] = {}, own2[lanes] = {}, inherited2[lanes] = {}, total2[lanes] = {},
-         cross[lanes] = {}, worstOwn[lanes] = {}, worstTotal[lanes] = {};
-  std::int64_t zeros = 0;
-  const std::int64_t whole = block.count - block.count % lanes;
-  for (std::int64_t i = 0; i < whole; i += lanes) {
-    for (std::int64_t k = 0; k < lanes; ++k) {
-      const double d = block.d[i + k], o = block.o[i + k], r = block.r[i + k];
-      const double own = d - o, total = d - r, inherited = o - r;
-      reference[k] += r * r;
-      own2[k] += own * own;
-      inherited2[k] += inherited * inherited;
-      total2[k] += total * total;
-      cross[k] += own * total;
-      worstOwn[k] = std::max(worstOwn[k], std::fabs(own));
-      worstTotal[k] = std::max(worstTotal[k], std::fabs(total));
-      zeros += d == 0 ? 1 : 0;
-    }
-  }
-  const auto sum = [](const double(&values)[lanes]) {
-    return (values[0] + values[1]) + (values[2] + values[3]);
-  };
-  const double all = sum(reference) + sum(own2) + sum(inherited2) + sum(total2);
-  if (!std::isfinite(all)) {
-    for (std::int64_t i = 0; i < whole; ++i) addCarefully(block, i, errors);
+void addReals(const Triple& block, Compared& all) {
+  OutputErrors& errors = all.errors;
+  const DifferenceSums sums = addDifferences(block.d, block.o, block.r, block.count);
+  double worst = 0;
+  if (!sums.isFinite()) {
+    errors.isSame = false;
+    for (std::int64_t i = 0; i < block.count; ++i) addCarefully(block, i, errors, worst);
   } else {
-    errors.reals += whole;
-    errors.reference2 += sum(reference);
-    errors.own2 += sum(own2);
-    errors.inherited2 += sum(inherited2);
-    errors.total2 += sum(total2);
-    errors.ownInTotal += sum(cross);
-    if (*std::ranges::max_element(worstOwn) > errors.own.error) {
-      for (std::int64_t i = 0; i < whole; ++i)
-        errors.own.add(std::fabs(block.d[i] - block.o[i]), block.first + i, block.component);
-    }
-    if (*std::ranges::max_element(worstTotal) > errors.total.error) {
-      for (std::int64_t i = 0; i < whole; ++i)
-        errors.total.add(std::fabs(block.d[i] - block.r[i]), block.first + i, block.component);
-    }
+    errors.reals += block.count;
+    errors.reference2 += sums.reference2;
+    errors.own2 += sums.own2;
+    errors.inherited2 += sums.inherited2;
+    errors.total2 += sums.total2;
+    errors.ownInTotal += sums.ownInTotal();
+    worst = sums.largestOwn;
+    errors.isSame =
+        errors.isSame && sums.total2 == 0 &&
+        std::memcmp(block.d, block.r, static_cast<std::size_t>(block.count) * sizeof(double)) == 0;
   }
-  for (std::int64_t i = whole; i < block.count; ++i) addCarefully(block, i, errors);
-  if (zeros == 0 && whole == block.count) return;
+  if (worst > all.worst.error) all.worst = {worst, block.first, block.count, block.component};
+  if (sums.isFinite() && !sums.mayFlush) return;
   for (std::int64_t i = 0; i < block.count; ++i) {
     if (block.d[i] == 0 && block.o[i] != 0 && std::fabs(block.o[i]) < leastNormal)
       errors.flushed.add(block.first + i, block.component);
@@ -225,10 +227,32 @@ void addReals(const Triple& block, OutputErrors& errors) {
 }
 
 /// Whether integers differ by more than the rounding of a number that is packed in their upper bits.
-bool differ(const Column& a, const Column& b, std::int64_t i) {
+bool differ(double x, double y) {
   constexpr double rounding = 0x1p-20;
-  const double x = a.at(i), y = b.at(i);
   return std::fabs(x - y) > rounding * std::max(std::fabs(x), std::fabs(y));
+}
+
+template <class T>
+double sumOfSquares(const void* array, std::int64_t first, std::int64_t count) {
+  double sums[4] = {};
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto value = static_cast<double>(loaded<T>(array, first + i));
+    sums[i % 4] += value * value;
+  }
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+double sumOfSquares(const Column& column, std::int64_t first, std::int64_t count) {
+  if (column.scalar == Scalar::Int) return sumOfSquares<std::int32_t>(column.array, first, count);
+  if (column.scalar == Scalar::Uint) return sumOfSquares<std::uint32_t>(column.array, first, count);
+  if (column.bytes == 1 && column.scalar != Scalar::Char)
+    return sumOfSquares<std::uint8_t>(column.array, first, count);
+  double sum = 0;
+  for (std::int64_t i = first; i < first + count; ++i) {
+    const double value = column.at(i);
+    sum += value * value;
+  }
+  return sum;
 }
 
 void addIntegers(const Column& d, const Column& o, const Column& r, const Triple& block,
@@ -240,54 +264,99 @@ void addIntegers(const Column& d, const Column& o, const Column& r, const Triple
   const auto bytes = static_cast<std::size_t>(block.count) * d.bytes;
   const bool isOwn = std::memcmp(at(d, block.first), at(o, block.first), bytes) != 0;
   const bool isTotal = std::memcmp(at(d, block.first), at(r, block.first), bytes) != 0;
-  if (!isOwn && !isTotal) {
-    for (std::int64_t i = block.first; i < block.first + block.count; ++i)
-      errors.integerReference2 += r.at(i) * r.at(i);
-    return;
-  }
+  errors.isSame = errors.isSame && !isTotal;
+  errors.integerReference2 += sumOfSquares(r, block.first, block.count);
+  if (!isOwn && !isTotal) return;
   for (std::int64_t i = block.first; i < block.first + block.count; ++i) {
-    if (differ(d, o, i)) errors.ownDecisions.add(i, block.component);
-    if (differ(d, r, i)) errors.decisions.add(i, block.component);
-    const double reference = r.at(i), total = d.at(i) - reference;
-    errors.integerReference2 += reference * reference;
+    const double reference = r.at(i), device = d.at(i), total = device - reference;
+    if (differ(device, o.at(i))) errors.ownDecisions.add(i, block.component);
+    if (differ(device, reference)) errors.decisions.add(i, block.component);
     errors.integerTotal2 += total * total;
   }
 }
 
-OutputErrors compareComponent(const NativeStream& device, const NativeStream& own,
-                              const NativeStream& reference, int component) {
-  const auto number = static_cast<std::size_t>(component);
-  const Column d(device, number), o(own, number), r(reference, number);
-  OutputErrors all;
-  std::mutex mutex;
-  const std::int64_t count = device.shape.size();
-  native::inParallel(count, 2, native::Deal::Evenly, [&](native::Range range) {
-    OutputErrors errors;
-    Block roomD, roomO, roomR;
-    for (std::int64_t first = range.begin; first < range.end; first += blockSize) {
-      Triple block{nullptr, nullptr, nullptr, first, std::min(blockSize, range.end - first), component};
-      if (!isReal(d.scalar)) {
-        addIntegers(d, o, r, block, errors);
-        continue;
-      }
-      block.d = doublesOf(d, first, block.count, roomD);
-      block.o = doublesOf(o, first, block.count, roomO);
-      block.r = doublesOf(r, first, block.count, roomR);
-      addReals(block, errors);
+/// Fills a block of the device's component from where its elements are.
+void fetch(const Column& from, const Column& to, std::int64_t first, std::int64_t count) {
+  const auto place = [first](const Column& column) {
+    return static_cast<const std::byte*>(column.array) + first * static_cast<std::int64_t>(column.bytes);
+  };
+  auto* const target = const_cast<std::byte*>(place(to));
+  if (from.bytes == to.bytes) {
+    std::memcpy(target, place(from), static_cast<std::size_t>(count) * to.bytes);
+  } else {
+    widenFloats(reinterpret_cast<const float*>(place(from)), count, reinterpret_cast<double*>(target));
+  }
+}
+
+/// The three arrays of a component, and where the device's come from.
+struct ComparedColumns {
+  Column d, o, r;
+  std::optional<Column> source;
+  int component;
+};
+
+void addRange(const ComparedColumns& columns, native::Range range, Compared& all) {
+  const auto& [d, o, r, source, component] = columns;
+  Block roomD, roomO, roomR;
+  for (std::int64_t first = range.begin; first < range.end; first += blockSize) {
+    Triple block{nullptr, nullptr, nullptr, first, std::min(blockSize, range.end - first), component};
+    if (source) fetch(*source, d, first, block.count);
+    if (!isReal(d.scalar)) {
+      addIntegers(d, o, r, block, all.errors);
+      continue;
     }
-    const std::lock_guard lock(mutex);
-    all.add(errors);
-  });
-  return all;
+    block.d = doublesOf(d, first, block.count, roomD);
+    block.o = o.array == r.array ? nullptr : doublesOf(o, first, block.count, roomO);
+    block.r = doublesOf(r, first, block.count, roomR);
+    if (block.o == nullptr) block.o = block.r;
+    addReals(block, all);
+  }
+}
+
+/// The first element of a block with its largest own error.
+Worst elementOf(const WorstBlock& worst, const Column& d, const Column& o) {
+  Block roomD, roomO;
+  const double* const device = doublesOf(d, worst.first, worst.count, roomD);
+  const double* const own = doublesOf(o, worst.first, worst.count, roomO);
+  std::int64_t i = 0;
+  while (i < worst.count - 1 && std::fabs(device[i] - own[i]) != worst.error) ++i;
+  return {worst.error, worst.first + i, worst.component};
 }
 
 }  // namespace
 
-OutputErrors compare(const NativeStream& device, const NativeStream* own, const NativeStream& reference) {
-  OutputErrors errors;
-  for (std::size_t c = 0; c < device.components.types().size(); ++c)
-    errors.add(compareComponent(device, own != nullptr ? *own : reference, reference, static_cast<int>(c)));
-  return errors;
+OutputErrors compare(NativeStream& device, const NativeStream* source, const NativeStream* own,
+                     const NativeStream& reference) {
+  const NativeStream& given = own != nullptr ? *own : reference;
+  std::vector<ComparedColumns> columns;
+  for (std::size_t c = 0; c < device.components.types().size(); ++c) {
+    columns.push_back({{device, c}, {given, c}, {reference, c}, {}, static_cast<int>(c)});
+    if (source != nullptr) columns.back().source.emplace(*source, c);
+  }
+  Compared all;
+  std::mutex mutex;
+  native::inParallel(device.shape.size(), static_cast<std::int64_t>(columns.size()), native::Deal::Evenly,
+                     [&](native::Range range) {
+                       Compared part;
+                       for (const ComparedColumns& each : columns) addRange(each, range, part);
+                       const std::lock_guard lock(mutex);
+                       all.add(part);
+                     });
+  if (source != nullptr) device.setWritten();
+  if (all.worst.error > 0) {
+    const ComparedColumns& worst = columns[static_cast<std::size_t>(all.worst.component)];
+    all.errors.own = elementOf(all.worst, worst.d, worst.o);
+  }
+  return all.errors;
+}
+
+bool haveSameBits(const NativeStream& a, const NativeStream& b) {
+  for (std::size_t c = 0; c < a.components.types().size(); ++c) {
+    const std::size_t bytes = static_cast<std::size_t>(a.shape.size()) * a.components.types()[c].storedBytes;
+    if (bytes > 0 && std::memcmp(a.components.arrays()[c], b.components.arrays()[c], bytes) != 0)
+      return false;
+  }
+  return true;
 }
 
 double squaresOfHalfRounding(const NativeStream& stream) {

@@ -34,17 +34,11 @@ struct Found {
   }
 };
 
-/// The largest difference, and its element.
+/// The largest difference, and the first element that has it.
 struct Worst {
   double error = 0;
   std::int64_t element = -1;
   int component = 0;
-
-  void add(double candidate, std::int64_t at, int of) {
-    if (!(candidate > error)) return;
-    *this = {candidate, at, of};
-  }
-  void add(const Worst& other) { add(other.error, other.element, other.component); }
 };
 
 /// Sums over the components of real numbers that are finite in all three arrays, and counts of others.
@@ -55,7 +49,7 @@ struct OutputErrors {
   double inherited2 = 0;  ///< sum of (o - r)^2
   double total2 = 0;  ///< sum of (d - r)^2
   double ownInTotal = 0;  ///< sum of (d - o)(d - r): what the own error contributes to the total
-  Worst own, total;
+  Worst own;
   Found nans, infinities;  ///< of the device
   Found newNans, newInfinities;  ///< of the device where the reference is finite with the device's inputs
   Found flushed;  ///< zeros of the device where the reference has a number below the smallest normal float
@@ -63,6 +57,7 @@ struct OutputErrors {
   Found ownDecisions, decisions;  ///< integers that differ from o, from r
   double integerReference2 = 0;  ///< sum of r * r over integers
   double integerTotal2 = 0;  ///< sum of (d - r)^2 over integers
+  bool isSame = true;  ///< all components of d are those of r, bit by bit
 
   void add(const OutputErrors& other);
 
@@ -80,8 +75,13 @@ struct OutputErrors {
   double relative(double squares) const;
 };
 
-/// Compares dense streams of one shape on native devices. Without `own`, the own error counts as the total one.
-OutputErrors compare(const NativeStream& device, const NativeStream* own, const NativeStream& reference);
+/// Compares dense streams of one shape on native devices. With `source`, first converts the elements of that one to `device`, which
+/// has at least its precision. Without `own`, the own error counts as the total one.
+OutputErrors compare(NativeStream& device, const NativeStream* source, const NativeStream* own,
+                     const NativeStream& reference);
+
+/// Whether dense streams of one shape and of the same types have the same bits.
+bool haveSameBits(const NativeStream& a, const NativeStream& b);
 
 /// Whether components of this type are compared as real numbers.
 bool isReal(program::Scalar scalar);

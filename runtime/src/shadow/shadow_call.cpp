@@ -131,10 +131,13 @@ void CallFollower::run() {
     device_.giveUp(call_.kernel, error.what());
   }
   runOnDevice();
+  if (isFollowed && isMeasured_ && !isRunOnce_)
+    runOwn();  // before the reference replaces elements that it reads
   if (!isFollowed || !runOnReference()) {
     loseOutputs(true);
   } else if (isMeasured_) {
-    hasOwn_ = runOwn();
+    hasOwn_ = hasOwn_ || isRunOnce_;
+    if (!ownProblem_.empty()) device_.recorder().note(ownProblem_);
     compareAll();
   }
   recordTimes(device_.recorder(), kernel_, {seconds_, referenceSeconds_, comparisonSeconds_});
@@ -159,7 +162,7 @@ bool CallFollower::prepare() {
     if (call_.kernel.parameters[i].role == Role::Uniform && argument.value != nullptr) continue;
     isComplete = stream->reference() != nullptr && isComplete;
     stream->noteRead(argument.region);
-    read_.push_back({i, stream, stream->errors, nullptr});
+    read_.push_back({.argument = i, .stream = stream, .errors = stream->errors});
   }
   for (std::size_t i = 0; i < call_.arguments.size() && i < call_.kernel.parameters.size(); ++i) {
     const Argument& argument = call_.arguments[i];
@@ -186,25 +189,46 @@ StreamRegion CallFollower::regionOf(const Written& written) const {
   return isResized ? detail::wholeRegion(written.stream) : region;
 }
 
-/// Copies what the call reads, before it runs: it may overwrite that.
+/// Makes sure of what the call reads, before it runs: it may overwrite that.
 void CallFollower::prepareOwn() {
   const Stopwatch watch(comparisonSeconds_);
-  TemporaryStreams& temporaries = device_.ownTemporaries(call_.kernel);
+  isRunOnce_ = &ownReference_ == &device_.reference();
   for (Read& read : read_) {
-    const StreamRegion& region = call_.arguments[read.argument].region;
-    read.device = temporaries.take(*read.stream->element, region.shape);
-    copyElements(read.stream->innerOf(region), detail::wholeRegion(read.device.get()));
+    prepareRead(read);
+    isRunOnce_ = isRunOnce_ && read.stream->isSame();
   }
-  for (Written& written : written_) {
-    const program::Element& element =
-        written.stream != nullptr ? *written.stream->element : *parameterOf(written).element;
-    const StreamRegion& region = call_.arguments[written.argument].region;
-    const bool isResized = parameterOf(written).role == Role::VariableOutput;
-    written.own = temporaries.take(element, isResized                   ? Shape{0}
-                                            : written.stream != nullptr ? region.shape
-                                                                        : Shape{1});
+  for (const Written& written : written_)
+    isRunOnce_ = isRunOnce_ && (!written.isPart || written.stream->isSame());
+  for (Written& written : written_) prepareWritten(written);
+}
+
+void CallFollower::prepareRead(Read& read) {
+  const StreamRegion& region = call_.arguments[read.argument].region;
+  const bool isOverwritten = std::ranges::find(written_, read.stream, &Written::stream) != written_.end();
+  const bool isQuad = &ownReference_ != &device_.reference();
+  if (NativeStream* const all =
+          isQuad ? nullptr : read.stream->deviceElements(isWhole(region), isOverwritten)) {
+    read.device = region;
+    read.device.stream = all;
+    return;
+  }
+  read.copy = device_.ownTemporaries(call_.kernel).take(*read.stream->element, region.shape);
+  copyElements(read.stream->innerOf(region), detail::wholeRegion(read.copy.get()));
+  read.device = inPlaceOf(region, *read.copy);
+}
+
+void CallFollower::prepareWritten(Written& written) {
+  const program::Element& element =
+      written.stream != nullptr ? *written.stream->element : *parameterOf(written).element;
+  const StreamRegion& region = call_.arguments[written.argument].region;
+  if (!isRunOnce_ && parameterOf(written).role == Role::VariableOutput) {
+    written.own = std::make_unique<NativeStream>(ownReference_, element, Shape{0}, Storage::Single);
+  } else if (!isRunOnce_) {
+    written.own = device_.ownTemporaries(call_.kernel)
+                      .take(element, written.stream != nullptr ? region.shape : Shape{1});
     if (written.isPart) copyElements(written.stream->innerOf(region), detail::wholeRegion(written.own.get()));
   }
+  if (written.stream != nullptr) written.before = written.stream->takeConverted();
 }
 
 void CallFollower::runOnDevice() {
@@ -251,13 +275,12 @@ bool CallFollower::runOnReference() {
   return true;
 }
 
-bool CallFollower::runOwn() {
+void CallFollower::runOwn() {
   try {
     const Stopwatch watch(referenceSeconds_);
     std::vector<Argument> arguments(call_.arguments.begin(), call_.arguments.end());
     for (Argument& argument : arguments) argument.rows = device_.rowsOn(ownReference_, argument.rows);
-    for (const Read& read : read_)
-      arguments[read.argument].region = inPlaceOf(call_.arguments[read.argument].region, *read.device);
+    for (const Read& read : read_) arguments[read.argument].region = read.device;
     for (const Written& written : written_) {
       const bool isResized = parameterOf(written).role == Role::VariableOutput;
       arguments[written.argument].region =
@@ -265,11 +288,9 @@ bool CallFollower::runOwn() {
                     : inPlaceOf(call_.arguments[written.argument].region, *written.own);
     }
     call_.run(arguments, {}, referenceOptions(device_, ownReference_, call_.options));
-    return true;
+    hasOwn_ = true;
   } catch (const std::exception& error) {
-    device_.recorder().note(
-        fmt::format("the own error of {} is not known: {}", call_.kernel.name, error.what()));
-    return false;
+    ownProblem_ = fmt::format("the own error of {} is not known: {}", call_.kernel.name, error.what());
   }
 }
 
@@ -285,9 +306,10 @@ void CallFollower::loseOutputs(bool isCounted) {
 
 void CallFollower::giveBack() {
   TemporaryStreams& temporaries = device_.ownTemporaries(call_.kernel);
-  for (Read& read : read_) temporaries.giveBack(std::move(read.device));
+  for (Read& read : read_) temporaries.giveBack(std::move(read.copy));
   for (Written& written : written_) {
-    temporaries.giveBack(std::move(written.own));
+    if (parameterOf(written).role != Role::VariableOutput) temporaries.giveBack(std::move(written.own));
+    device_.temporaries().giveBack(std::move(written.before));
     device_.temporaries().giveBack(std::move(written.total));
     device_.temporaries().giveBack(std::move(written.device));
   }

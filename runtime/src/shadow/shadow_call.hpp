@@ -2,7 +2,7 @@
 //
 // A call of the program on a shadowed device. It runs three times: on the device, as ever; on the reference with the device's own
 // inputs, which shows the error that the call adds; and on the reference with the reference's inputs, which shows what has
-// reached its outputs in all.
+// reached its outputs in all. If these inputs are the same, the reference runs it once.
 #pragma once
 
 #include <cstdint>
@@ -49,25 +49,36 @@ class CallFollower {
     std::size_t argument;
     ShadowStream* stream;  ///< null: a value
     bool isPart;  ///< other elements of the region keep their values
+    bool isSame = false;  ///< the device's new elements are those of the reference, bit by bit
     std::unique_ptr<NativeStream> own = {}, total = {},
                                   device = {};  ///< temporaries; `total` of values alone
+    std::unique_ptr<NativeStream> before =
+        {};  ///< the stream's copy of the device's old elements; may be null
   };
   struct Read {
     std::size_t argument;
     ShadowStream* stream;
     StreamErrors errors;  ///< before the call
-    std::unique_ptr<NativeStream> device = {};
+    StreamRegion device =
+        {};  ///< the device's elements on the reference; without a stream if the call is not measured
+    std::unique_ptr<NativeStream> copy =
+        {};  ///< the temporary that `device` is in; null if it is in a copy that the stream keeps
   };
 
   bool isWritten(std::size_t argument) const;
   bool prepare();
   void prepareOwn();
+  void prepareRead(Read& read);
+  void prepareWritten(Written& written);
   void runOnDevice();
   bool runOnReference();
-  bool runOwn();
+  void runOwn();
   void compareAll();
+  void keepElements();
   void keepInputs();
   void compareOutput(Written& written);
+  /// What the reference computes with the device's inputs; null if that is not known.
+  const NativeStream* ownOf(const Written& written) const;
   void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
   shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component) const;
   void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel,
@@ -89,6 +100,9 @@ class CallFollower {
   std::int64_t number_ = 0;
   int kernel_ = 0;  ///< its number in the report
   bool isMeasured_ = false, hasOwn_ = false;
+  bool isRunOnce_ =
+      false;  ///< the device's inputs are those of the reference, so that one run on it shows both errors
+  std::string ownProblem_;  ///< why the own error is not known
   bool isWorst_ = false;  ///< no call of its kernel has had a larger own error
   const NativeStream* reference_ = nullptr;  ///< what the output that is recorded is compared with
   double amplification_ = 0;

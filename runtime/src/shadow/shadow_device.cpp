@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "device/loop_state.hpp"
 #include "device/rows_state.hpp"
 #include "native/entries.hpp"
+#include "shadow/copies.hpp"
 #include "shadow/results.hpp"
 #include "shadow/shadow_call.hpp"
 #include "shadow/shadow_staging.hpp"
@@ -21,20 +23,59 @@
 namespace sk {
 
 std::unique_ptr<NativeStream> TemporaryStreams::take(const program::Element& element, const Shape& shape) {
-  const auto found = std::ranges::find_if(free_, [&](const std::unique_ptr<NativeStream>& stream) {
+  // the one that was given back last is the likeliest to be in a cache
+  const auto found = std::find_if(streams_.rbegin(), streams_.rend(), [&](const auto& stream) {
     return stream->element == &element && stream->shape == shape;
   });
-  if (found == free_.end()) return std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
-  std::unique_ptr<NativeStream> stream = std::move(*found);
-  free_.erase(found);
+  std::unique_ptr<NativeStream> stream;
+  if (found == streams_.rend()) {
+    stream = std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
+  } else {
+    stream = std::move(*found);
+    streams_.erase(std::next(found).base());
+    free_ -= bytesOf(*stream);
+  }
+  countTaken(bytesOf(*stream));
   return stream;
+}
+
+void TemporaryStreams::countTaken(std::int64_t bytes) {
+  taken_ += bytes;
+  mostTaken_ = std::max(mostTaken_, taken_);
 }
 
 void TemporaryStreams::giveBack(std::unique_ptr<NativeStream> stream) {
   if (stream == nullptr) return;
-  constexpr std::size_t most = 24;
-  if (free_.size() == most) free_.erase(free_.begin());  // the one that nobody has taken for longest
-  free_.push_back(std::move(stream));
+  countTaken(-bytesOf(*stream));
+  free_ += bytesOf(*stream);
+  streams_.push_back(std::move(stream));
+  trim();
+}
+
+void TemporaryStreams::trim() {
+  constexpr std::size_t most = 64;  // a search among many takes long
+  while (!streams_.empty() && (owner_.roomForTemporaries() < 0 || streams_.size() > most)) {
+    free_ -= bytesOf(*streams_.front());
+    streams_.erase(streams_.begin());
+  }
+}
+
+void ShadowDevice::keep(std::int64_t bytes) {
+  temporaries_.countTaken(-bytes);
+  kept_ += bytes;
+  temporaries_.trim();
+}
+
+void ShadowDevice::takeKept(std::int64_t bytes) {
+  kept_ -= bytes;
+  temporaries_.countTaken(bytes);
+}
+
+std::int64_t ShadowDevice::roomForTemporaries() const {
+  std::int64_t room = mostKept() - kept_;
+  room += temporaries_.mostTakenBytes() - temporaries_.freeBytes();
+  if (quadTemporaries_) room += quadTemporaries_->mostTakenBytes() - quadTemporaries_->freeBytes();
+  return room;
 }
 
 struct ShadowDevice::RowsCopy {
@@ -57,7 +98,8 @@ ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorde
     : primary_(std::move(primary)),
       recorder_(recorder),
       reference_(std::make_unique<NativeDevice>(RealType::Double)),
-      temporaries_(*reference_) {
+      temporaries_(*reference_, *this) {
+  reference_->isSilent = true;  // the device prints
   interposed = this;
   limits = primary_->limits;
   memoryLimit = primary_->memoryLimit;
@@ -105,7 +147,8 @@ NativeDevice& ShadowDevice::ownReference(const program::Kernel& kernel) {
   }
   if (!quad_) {
     quad_ = std::make_unique<NativeDevice>(RealType::Quad);
-    quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_);
+    quad_->isSilent = true;
+    quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_, *this);
   }
   return *quad_;
 }

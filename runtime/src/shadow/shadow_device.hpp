@@ -4,6 +4,7 @@
 // Neither knows of it. Every call runs on both (shadow_call.hpp), and a recorder collects how far they are apart.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -18,19 +19,31 @@
 
 namespace sk {
 
-/// Streams on a native device that calls need for a while.
+class ShadowDevice;
+
+/// Streams on a native device that calls need for a while. Those that nobody needs are kept for the next call, as far as
+/// ShadowDevice::roomForTemporaries() allows.
 class TemporaryStreams {
  public:
-  explicit TemporaryStreams(NativeDevice& device) : device_(device) {}
+  TemporaryStreams(NativeDevice& device, const ShadowDevice& owner) : device_(device), owner_(owner) {}
 
   /// A stream with undefined elements. Throws sk::Error if there is no memory.
   std::unique_ptr<NativeStream> take(const program::Element& element, const Shape& shape);
   void giveBack(std::unique_ptr<NativeStream> stream);
-  void clear() { free_.clear(); }
+  /// Counts a stream among those that are taken, or no longer.
+  void countTaken(std::int64_t bytes);
+  /// Frees those that have not been taken for longest.
+  void trim();
+
+  std::int64_t freeBytes() const { return free_; }
+  std::int64_t mostTakenBytes() const { return mostTaken_; }
 
  private:
   NativeDevice& device_;
-  std::vector<std::unique_ptr<NativeStream>> free_;
+  const ShadowDevice& owner_;
+  std::vector<std::unique_ptr<NativeStream>> streams_;
+  std::int64_t free_ = 0;  ///< bytes of streams_
+  std::int64_t taken_ = 0, mostTaken_ = 0;  ///< bytes that are taken now, and the most at once
 };
 
 class ShadowDevice final : public DeviceState, public detail::Distribution {
@@ -50,6 +63,14 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   /// Counts the bytes of the reference's streams. Returns false, without counting them, if they are more than allowed.
   bool takeMemory(std::int64_t bytes);
   void freeMemory(std::int64_t bytes) { memory_ -= bytes; }
+  /// Whether a stream may keep another copy of its device's elements: all copies take at most as much as the reference's streams.
+  bool hasRoomForCopy(std::int64_t bytes) const { return kept_ + bytes <= mostKept(); }
+  /// A stream keeps one of temporaries(), gives it to a call, or frees it.
+  void keep(std::int64_t bytes);
+  void takeKept(std::int64_t bytes);
+  void dropKept(std::int64_t bytes) noexcept { kept_ -= bytes; }
+  /// The bytes that all temporaries may have that nobody needs: what copies leave, and what one call has needed at once.
+  std::int64_t roomForTemporaries() const;
   /// The reference device of a kernel whose own error is measured in __float128; else the usual one.
   NativeDevice& ownReference(const program::Kernel& kernel);
   TemporaryStreams& ownTemporaries(const program::Kernel& kernel);
@@ -113,6 +134,8 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   bool needsDense(const program::Kernel&, std::span<const Argument>, std::size_t) override { return false; }
 
  private:
+  std::int64_t mostKept() const { return std::min(memory_, memoryLimit_ - memory_); }
+
   std::unique_ptr<DeviceState> primary_;
   shadow::Recorder& recorder_;
   std::unique_ptr<NativeDevice> reference_;
@@ -122,7 +145,10 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::map<const program::Kernel*, std::string> givenUp_;
   struct RowsCopy;
   std::vector<std::unique_ptr<RowsCopy>> rows_;
-  std::int64_t streams_ = 0, memory_ = 0, memoryLimit_ = 0;
+  std::int64_t streams_ = 0;
+  std::int64_t memory_ = 0,
+               memoryLimit_ = 0;  ///< bytes of the reference's streams, and the most for these and copies
+  std::int64_t kept_ = 0;  ///< bytes of the copies that streams keep
   ShadowStream* sortedKeys_ = nullptr;
 };
 

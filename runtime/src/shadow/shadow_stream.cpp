@@ -13,6 +13,7 @@
 #include "call/placed.hpp"
 #include "device/region.hpp"
 #include "shadow/copies.hpp"
+#include "shadow/errors.hpp"
 #include "shadow/results.hpp"
 #include "shadow/shadow_device.hpp"
 #include "sk/error.hpp"
@@ -47,6 +48,7 @@ ShadowStream::ShadowStream(ShadowDevice& on, std::unique_ptr<StreamState> inner)
 ShadowStream::~ShadowStream() {
   if (device == nullptr) return;
   endWrite();
+  dropConverted();
   owner().freeMemory(bytes_);
   if (owner().sortedKeys() == this) owner().setSortedKeys(nullptr);
 }
@@ -89,12 +91,49 @@ NativeStream* ShadowStream::reference() {
   if (!isStale_) return held;
   if (!inner_->isLost()) copyElements(detail::wholeRegion(inner_.get()), detail::wholeRegion(held));
   isStale_ = false;
+  isSame_ = !inner_->isLost();
   return held;
+}
+
+NativeStream* ShadowStream::deviceElements(bool mayConvert, bool isOverwritten) {
+  if (exposed_ || reference_ == nullptr || isStale_ || inner_->isLost()) return nullptr;
+  if (isSame_ && !isOverwritten) return reference_.get();
+  if (converted_ != nullptr) return converted_.get();
+  if (!mayConvert || !owner().hasRoomForCopy(bytesOf(*reference_))) return nullptr;
+  std::unique_ptr<NativeStream> copy = owner().temporaries().take(*element, shape);
+  copyElements(detail::wholeRegion(inner_.get()), detail::wholeRegion(copy.get()));
+  isSame_ = isSame_ || (errors.relative == 0 && shadow::haveSameBits(*copy, *reference_));
+  if (isSame_ && !isOverwritten) {
+    owner().temporaries().giveBack(std::move(copy));
+    return reference_.get();
+  }
+  keepConverted(std::move(copy));
+  return converted_.get();
+}
+
+std::unique_ptr<NativeStream> ShadowStream::takeConverted() {
+  if (converted_ != nullptr) owner().takeKept(bytesOf(*converted_));
+  return std::move(converted_);
+}
+
+void ShadowStream::keepConverted(std::unique_ptr<NativeStream> copy) {
+  if (std::unique_ptr<NativeStream> old = takeConverted()) owner().temporaries().giveBack(std::move(old));
+  if (exposed_ || !owner().hasRoomForCopy(bytesOf(*copy)))
+    return owner().temporaries().giveBack(std::move(copy));
+  owner().keep(bytesOf(*copy));
+  converted_ = std::move(copy);
+}
+
+void ShadowStream::dropConverted() noexcept {
+  if (converted_ != nullptr) owner().dropKept(bytesOf(*converted_));
+  converted_.reset();
 }
 
 void ShadowStream::goStale(bool isCounted) {
   if (isCounted && !isStale_) ++resyncs;
   isStale_ = true;
+  isSame_ = false;
+  dropConverted();
   errors = {};
 }
 
@@ -120,7 +159,11 @@ void ShadowStream::settle() {
   shape = inner_->shape;
 }
 
-void ShadowStream::mirrorMarks() noexcept { inner_->isLost() ? markLost() : setWritten(); }
+void ShadowStream::mirrorMarks() noexcept {
+  inner_->isLost() ? markLost() : setWritten();
+  isSame_ = false;
+  dropConverted();
+}
 
 std::size_t ShadowStream::hash() {
   auto elements = detail::hostVector<std::byte>(bytesOf(shape.size(), element->size));
@@ -229,6 +272,8 @@ void ShadowStream::exchangeElements(StreamState& other) noexcept {
   inner_->exchangeElements(*with.inner_);
   // references may differ in what they hold, but not in their type: the streams exchange them whole
   std::swap(reference_, with.reference_);
+  std::swap(converted_, with.converted_);
+  std::swap(isSame_, with.isSame_);
   std::swap(isStale_, with.isStale_);
   std::swap(isRefused_, with.isRefused_);
   std::swap(bytes_, with.bytes_);
@@ -262,6 +307,8 @@ StreamTexture ShadowStream::texture(int plane) {
   noteRead(detail::wholeRegion(this));
   const StreamTexture texture = inner_->texture(plane);
   if (owner().isFollowing()) exposed_ = hash();
+  isSame_ = false;
+  dropConverted();
   return texture;
 }
 
@@ -306,6 +353,7 @@ void ShadowStream::endWrite() {
 void ShadowStream::empty() noexcept {
   inner_.reset();
   reference_.reset();
+  converted_.reset();
 }
 
 }  // namespace sk

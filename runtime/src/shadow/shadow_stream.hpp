@@ -59,6 +59,19 @@ class ShadowStream final : public StreamState {
   /// Makes room for the reference without elements; null if there is no memory.
   NativeStream* room();
 
+  /// A stream of doubles with all elements of the device: the reference's if they are the same and nothing is about to write those
+  /// (`isOverwritten`), else a copy that is kept until the device writes the elements. Null if there is none, and either `mayConvert`
+  /// is false or there is no memory to keep one. The reference is not stale.
+  NativeStream* deviceElements(bool mayConvert, bool isOverwritten);
+  /// Whether the elements of the device and of the reference are known to be the same, bit by bit.
+  bool isSame() const { return isSame_; }
+  void setSame(bool isSame) { isSame_ = isSame; }
+  /// The copy that is kept; null if there is none.
+  NativeStream* converted() const { return converted_.get(); }
+  std::unique_ptr<NativeStream> takeConverted();
+  /// Keeps a copy of the device's elements, which are not the reference's, if memory allows it.
+  void keepConverted(std::unique_ptr<NativeStream> copy);
+
   StreamState& underlying() override { return *inner_; }
   void noteUnderlyingWritten() override {
     mirrorMarks();
@@ -79,7 +92,7 @@ class ShadowStream final : public StreamState {
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;
 
-  /// Takes over from the inner stream whether the elements are lost.
+  /// The device has written elements. Takes over from the inner stream whether they are lost.
   void mirrorMarks() noexcept;
   /// The device has written elements of a stream whose texture the application has: what differs from them later, it has drawn.
   void refreshExposure();
@@ -102,9 +115,13 @@ class ShadowStream final : public StreamState {
   std::size_t hash();
   template <class Change>
   void change(const StreamRegion& region, Change&& change);
+  void dropConverted() noexcept;
 
   std::unique_ptr<StreamState> inner_;
   std::unique_ptr<NativeStream> reference_;
+  std::unique_ptr<NativeStream>
+      converted_;  ///< the device's elements, from the device's TemporaryStreams; may be null
+  bool isSame_ = false;
   bool isStale_ = true;  ///< at first, both have undefined elements, which need not be equal
   bool isRefused_ = false;  ///< there was no memory for the reference
   std::optional<std::size_t> exposed_;  ///< hash of the elements, if the application has a texture of them

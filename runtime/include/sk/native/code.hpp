@@ -73,6 +73,7 @@ struct Frame {
   const Argument* arguments;
   std::int64_t domain[4];
   const Table* tables;  ///< one per tabulated function; null if these are computed
+  std::int64_t isSilent = 0;  ///< 1: nothing is printed
 };
 
 /// The elements `x`, `x + step` ... in a row of the domain, or in several rows.
@@ -169,7 +170,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 8;
+  static constexpr std::uint32_t currentVersion = 9;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
