@@ -41,7 +41,7 @@ json "assert not broken and all['broken'] == 0 and any('stableStep.x' in text fo
 # Division by the end of a range, with where the infinity comes from.
 run 1 --json all.json -- "$program" divide 20
 prints 'stressed::reciprocal.x = 0 everywhere, the lower end of its range'
-prints "20 of 20 elements of 'v' are NaN or infinite; the first infinity comes from stressed::reciprocal, call 1"
+prints "20 of 20 elements of 'v' are NaN or infinite; the infinity comes from stressed::reciprocal, call 1"
 json "
 assert broken == {'stressed::reciprocal.x = 0 everywhere, the lower end of its range'}, broken
 assert not any('nan' in text for text in kinds), kinds"
@@ -54,8 +54,23 @@ assert 'notFinite' in kinds['factor of stressed::scale and stressed::offset = 3.
 assert kinds['stressed::scale.shift = 1'] == [] and not broken, kinds"
 run 0 --only 'stressed::scale.shift' --json all.json -- "$program" plain 20
 json "assert len(kinds) == 3 and all['runs'][2]['settings'] == ['stressed::scale.shift:1'], all['runs']"
-run 0 --only 'stressed::nothing' -- "$program" plain 20
-prints 'note: --only stressed::nothing matches nothing'
+run 1 --only 'stressed::nothing' -- "$program" plain 20
+says '--only stressed::nothing matches nothing that the host gives; it gives stressed::scale.factor, stressed::scale.shift, '
+
+# What grows as it should is no unstable step; what vanishes need not have digits; vectors are counted by numbers.
+run 0 --all --json all.json -- "$program" accrue 20
+json "
+assert 'unstable' in kinds['stressed::accrue.rate = 0.2, the upper end of its range'], kinds
+assert 'and so does what it computes' in texts['stressed::accrue.rate = 0.2, the upper end of its range'], texts"
+run 1 --json all.json -- "$program" vectors 20
+json "
+assert broken == {'stressed::directions.d = 0 everywhere, the lower end of its range'}, broken
+assert '60 of 60 numbers of' in texts['stressed::directions.d = 0 everywhere, the lower end of its range'], texts"
+# Infinite results have no digits.
+run 1 --json all.json -- "$program" far 20
+json "
+assert broken == {'stressed::far.x = 1e+30 everywhere, the upper end of its range'}, broken
+assert all['runs'][2]['results'][0]['error'] == 'inf' and 'where double has a number' in texts[all['runs'][2]['text']], all['runs'][2]"
 
 # Loops that do not converge, those of the device and those of the program.
 run 1 --only 'stressed::approach.keep' --json all.json -- "$program" loop 20
@@ -68,11 +83,11 @@ assert broken == {'stressed::approach.keep = 1, the upper end of its range'}, br
 assert 'calls stressed::approach 500 times' in texts['stressed::approach.keep = 1, the upper end of its range'], texts"
 
 # Sizes: a crash breaks the program, a refusal does not.
-run 1 --only none --sizes 1,2,17 --json all.json -- "$program" crash '{20}'
+run 1 --only 'stressed::scale.shift' --sizes 1,2,17 --json all.json -- "$program" crash '{20}'
 json "assert broken == {'size 1'} and kinds['size 1'] == ['crash'] and kinds['size 17'] == [], kinds"
-run 0 --only none --sizes 1,2 --json all.json -- "$program" refuse '{20}'
+run 0 --only 'stressed::scale.shift' --sizes 1,2 --json all.json -- "$program" refuse '{20}'
 json "assert kinds['size 1'] == ['status'] and 'the size 1 is odd' in texts['size 1'] and kinds['size 2'] == [], texts"
-run 0 --only none -- "$program" plain 20
+run 0 --only 'stressed::scale.shift' -- "$program" plain 20
 prints 'put one in braces, --size={256}'
 
 # A limit ends a run, and the pages of all runs can be kept.
@@ -84,6 +99,19 @@ cp results.txt before.txt
 run 0 --only 'stressed::scale.*' -- "$program" file results.txt
 cmp -s results.txt before.txt || broken 'the results are those of an extreme'
 
+# A run that hangs has told what it did, and a run that is interrupted leaves nothing behind.
+run 0 --only 'stressed::offset.x' --limit 3 --json all.json -- "$program" hang 20
+json "
+hung = next(text for text in kinds if 'e+38 everywhere, huge' in text and '-3' not in text)
+assert kinds[hung] == ['unended'] and 'it had made ' in texts[hung] and 'made 0 calls' not in texts[hung], texts"
+mkdir temporary
+(TMPDIR=$place/temporary exec "$sk" stress -- "$program" hang 20 >/dev/null 2>interrupted) & search=$!
+sleep 0.3
+kill -TERM $search
+wait $search && broken 'an interrupted search ends with status 0'
+grep -q 'interrupted by signal 15' interrupted || broken 'an interrupted search does not say so'
+[[ -z $(ls temporary) ]] || broken "an interrupted search leaves $(ls temporary)"
+
 # What cannot be stressed is refused.
 refuses() {
   run 1 "${@:2}"
@@ -92,13 +120,22 @@ refuses() {
 refuses "as it is, '$program' ends with status 3" -- "$program" status
 run 0 --any-status --only 'stressed::scale.shift' -- "$program" status
 refuses 'reads no result from its streams' -- "$program" silent
+refuses "'$program' starts 2 processes with devices" -- "$program" twice
+SK_CHECK=written refuses 'SK_CHECK=written is set' -- "$program" plain
+refuses "there is no program ''" -- ""
 refuses 'calls no kernel' -- "$program" nothing
-refuses 'opens no device of StreamKernel' -- true
+refuses 'leaves no report of a shadow' -- true
 refuses "there is no program './missing'" -- ./missing
 refuses '--sizes' --sizes 0 -- "$program" plain
-refuses "cannot write '/nowhere/all.json'" --only none --json /nowhere/all.json -- "$program" plain
+refuses "cannot write '/nowhere/all.json'" --json /nowhere/all.json -- "$program" plain
 refuses 'program is required'
 # A setting that is not valid leaves the program as it is.
 SK_SHADOW=report.json,set=scale:1 "$program" plain 2>messages || broken 'an invalid setting ends the program'
 grep -q "set is 'scale:1'; give KERNEL.PARAMETER:NUMBER" messages || broken 'an invalid setting is not named'
+# One that names nothing is told in the report.
+SK_SHADOW=report.json,set=stressed::scale.fact:1 "$program" plain
+grep -q 'set=stressed::scale.fact has changed nothing' report.json || broken 'a setting without effect is not told'
+# Names of files and programs may be any bytes.
+cp "$program" $'odd\xff'
+run 0 --only '*.shift' -- "./"$'odd\xff' plain
 echo ok

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "device/device_state.hpp"
+#include "device/internal_work.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -264,6 +265,7 @@ std::int64_t LoopState::runAndAsk(const StreamRegion& done, std::int64_t every, 
 
 bool LoopState::isTrue(const StreamRegion& done) {
   checkElementsOf(done, false, "until");
+  const InternalWork work(*done.stream->device);
   bool isDone = false;
   done.stream->read(done, reinterpret_cast<std::byte*>(&isDone));
   return isDone;

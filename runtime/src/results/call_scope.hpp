@@ -11,21 +11,12 @@
 #include <fmt/format.h>
 
 #include "device/device_state.hpp"
+#include "device/internal_work.hpp"
 #include "results/recorder.hpp"
 
 namespace sk::results {
 
-/// While it lives, the runtime works on its own: calls and reads are parts of something that the application asked for.
-class InternalWork {
- public:
-  explicit InternalWork(DeviceState& device) : device_(device) { ++device_.internalWork; }
-  ~InternalWork() { --device_.internalWork; }
-  InternalWork(const InternalWork&) = delete;
-  InternalWork& operator=(const InternalWork&) = delete;
-
- private:
-  DeviceState& device_;
-};
+using sk::InternalWork;
 
 /// The recorder, unless the runtime works on its own.
 inline Recorder* recorderOf(const DeviceState& device) {

@@ -138,8 +138,8 @@ void visit(Archive& archive, StreamRecord& it) {
 }
 template <class Archive>
 void visit(Archive& archive, ResultRecord& it) {
-  archive(it.name, it.isValue, it.reads, it.elements, it.largest, it.last, it.differs, it.notFinite,
-          it.withoutValue, it.shares);
+  archive(it.name, it.isValue, it.reads, it.elements, it.largest, it.last, it.differs, it.numbers,
+          it.notFinite, it.withoutValue, it.shares);
 }
 template <class Archive>
 void visit(Archive& archive, GivenRecord& it) {
@@ -301,6 +301,7 @@ void add(ResultRecord& to, const ResultRecord& from) {
   to.differs += from.differs;
   to.notFinite += from.notFinite;
   to.withoutValue += from.withoutValue;
+  to.numbers += from.numbers;
   to.shares.add(from.shares, std::fmin(1, from.last));
   to.largest = std::fmax(to.largest, from.largest);
   to.last = std::fmax(to.last, from.last);

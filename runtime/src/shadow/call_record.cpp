@@ -273,18 +273,17 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
   Recorder::Access report(device_.recorder());
   KernelRecord& record = recordOf(*report, kernel_);
   const StreamErrors after = errorsAfter(written, errors, kernel_);
-  if (errors.reals > 0) {
-    if (hasOwn) record.own.add(errors.relativeOwn());
+  if (errors.reals > 0 || errors.lost > 0) {
+    if (hasOwn) record.own.add(errors.reportedOwn());
     record.inherited.add(errors.relativeInherited());
-    record.total.add(errors.relativeTotal());
+    record.total.add(errors.reportedTotal());
     double inputs = 0;
     for (const Read& read : read_) inputs = std::max(inputs, read.errors.relative);
     if (hasOwn && inputs > 0 && std::isfinite(inputs))
       amplification_ = std::max(amplification_, errors.relativeInherited() / inputs);
     const std::size_t output = Recorder::output(record, parameter.name, parameter.element->name);
     record.outputs[output].points.add({number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(),
-                                       errors.relativeTotal(),
-                                       std::sqrt(errors.total2 / static_cast<double>(errors.reals))});
+                                       after.relative, errors.absoluteTotal(), turns(written)});
     const double scale = errors.scale();
     const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
     if (errors.own.element >= 0 && worst > record.worstError) {
@@ -307,9 +306,12 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
         *report, isOnly ? name : fmt::format("{} of {}", parameter.name, name), true)];
     ++result.reads;
     result.elements = 1;
+    result.numbers = shadow::realComponents(*parameter.element);
+    result.exception = exception_;
     result.scale = std::max(result.scale, errors.scale());
     result.last = result.scale > 0 && errors.reals > 0 ? after.relative * errors.scale() / result.scale
                                                        : after.relative;
+    if (errors.lost > 0) result.last = std::numeric_limits<double>::infinity();
     result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
@@ -318,11 +320,36 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
   }
 }
 
+/// Whether the output has mostly the other sign than an input of its shape, by some of their elements.
+bool CallFollower::turns(const Written& written) const {
+  constexpr std::int64_t most = 256;
+  if (written.device == nullptr || written.stream == nullptr) return false;
+  const std::span<const ComponentType> types = written.device->components.types();
+  const auto real =
+      std::ranges::find_if(types, [](const ComponentType& type) { return shadow::isReal(type.scalar); });
+  if (real == types.end()) return false;
+  const int component = static_cast<int>(real - types.begin());
+  const std::int64_t count = written.device->shape.size(), step = std::max<std::int64_t>(1, count / most);
+  return std::ranges::any_of(read_, [&](const Read& read) {
+    const bool isAlike = read.device.stream != nullptr && read.device.shape == written.device->shape &&
+                         read.stream->element == written.stream->element;
+    if (!isAlike) return false;
+    const auto& input = static_cast<const NativeStream&>(*read.device.stream);
+    const AffineRegion region = affine(read.device);
+    double product = 0;
+    for (std::int64_t i = 0; i < count; i += step) {
+      product += shadow::valueAt(*written.device, component, i) *
+                 shadow::valueAt(input, component, numberInStream(region, i));
+    }
+    return product < 0;
+  });
+}
+
 /// What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had.
 StreamErrors CallFollower::errorsAfter(const Written& written, const OutputErrors& errors, int kernel) const {
   StreamErrors after;
   double own = errors.ownShare();
-  after.relative = errors.relativeTotal();
+  after.relative = errors.lost > 0 ? std::max(errors.relativeTotal(), 1.0) : errors.relativeTotal();
   if (errors.relativeIntegers() > after.relative) {
     after.relative = errors.relativeIntegers();
     own = std::min(
@@ -413,6 +440,11 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
   record.infinities += errors.newInfinities.count;
   record.flushed += errors.flushed.count;
   StreamErrors* const stream = written.stream != nullptr ? &written.stream->errors : nullptr;
+  exception_ = -1;
+  const auto keep = [&](int exception) {
+    exception_ = exception;
+    if (stream != nullptr) stream->exception = exception;
+  };
   const auto found = [&](Kind kind, const shadow::Found& all, const shadow::Found& added, bool wasThere) {
     if (all.count == 0) return;
     const shadow::Found& shown = added.count > 0 ? added : all;
@@ -424,7 +456,7 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
       });
       if (!isKnown && path.size() < longestPath)
         path.push_back({number_, kernel, std::string(parameterOf(written).name), all.count});
-      if (stream != nullptr) stream->exception = read.errors.exception;
+      keep(read.errors.exception);
     }
     if (wasThere && added.count == 0) return;
     const bool isKnown = std::ranges::any_of(report.exceptions, [&](const ExceptionRecord& each) {
@@ -433,7 +465,8 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
     if (isKnown || report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
     report.exceptions.push_back(
         {kind, kernel, shown.count, added.count == 0, elementOf(written, shown.first, shown.component), {}});
-    if (stream != nullptr) stream->exception = static_cast<int>(report.exceptions.size() - 1);
+    // infinity minus infinity is NaN: it comes from where the infinity does
+    if (added.count > 0 || exception_ < 0) keep(static_cast<int>(report.exceptions.size() - 1));
   };
   const bool hadNan = std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasNan; });
   const bool hadInfinity =

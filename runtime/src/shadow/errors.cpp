@@ -20,6 +20,12 @@
 
 namespace sk::shadow {
 
+namespace {
+
+constexpr double leastNormal = std::numeric_limits<float>::min();
+
+}  // namespace
+
 void OutputErrors::add(const OutputErrors& other) {
   reals += other.reals;
   reference2 += other.reference2;
@@ -31,6 +37,7 @@ void OutputErrors::add(const OutputErrors& other) {
   infinities.add(other.infinities);
   newNans.add(other.newNans);
   newInfinities.add(other.newInfinities);
+  lost += other.lost;
   flushed.add(other.flushed);
   integers += other.integers;
   ownDecisions.add(other.ownDecisions);
@@ -47,16 +54,35 @@ double OutputErrors::relativeIntegers() const {
   return std::sqrt(std::min(share, asNumbers));
 }
 
-double OutputErrors::ownShare() const { return total2 > 0 ? std::clamp(ownInTotal / total2, 0.0, 1.0) : 0; }
+double OutputErrors::reportedOwn() const {
+  const bool isLost = newNans.count > 0 || newInfinities.count > 0;
+  return isLost ? std::numeric_limits<double>::infinity() : relativeOwn();
+}
+
+double OutputErrors::reportedTotal() const {
+  return lost > 0 ? std::numeric_limits<double>::infinity() : relativeTotal();
+}
+
+double OutputErrors::ownShare() const {
+  if (newNans.count > 0 || newInfinities.count > 0) return 1;
+  return total2 > 0 ? std::clamp(ownInTotal / total2, 0.0, 1.0) : 0;
+}
 
 double OutputErrors::scale() const {
   return reals > 0 ? std::sqrt(reference2 / static_cast<double>(reals)) : 0;
 }
 
+double OutputErrors::absoluteTotal() const {
+  return reals > 0 ? std::sqrt(total2 / static_cast<double>(reals)) : 0;
+}
+
 double OutputErrors::relative(double squares) const {
   if (squares == 0) return 0;
   // where the reference is 0 everywhere, nothing of the result is right
-  return reference2 > 0 ? std::sqrt(squares / reference2) : 1;
+  if (!(reference2 > 0)) return 1;
+  // below the smallest normal float, floats have fewer digits
+  const double least = static_cast<double>(reals) * leastNormal * leastNormal;
+  return std::sqrt(squares / std::max(reference2, least));
 }
 
 using program::Scalar;
@@ -81,6 +107,12 @@ bool isReal(Scalar scalar) {
     case Scalar::Ushort: return false;
   }
   return false;
+}
+
+std::int64_t realComponents(const program::Element& element) {
+  std::int64_t count = 0;
+  for (const program::Field& field : element.fields) count += isReal(field.scalar) ? field.width : 0;
+  return count;
 }
 
 namespace {
@@ -185,6 +217,7 @@ void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors, dou
   if (std::isnan(d)) errors.nans.add(element, block.component);
   if (std::isinf(d)) errors.infinities.add(element, block.component);
   if (std::isfinite(o) && std::isnan(d)) errors.newNans.add(element, block.component);
+  if (std::isfinite(r) && !std::isfinite(d)) ++errors.lost;
   if (std::isfinite(o) && std::isinf(d)) errors.newInfinities.add(element, block.component);
   if (!std::isfinite(d) || !std::isfinite(o) || !std::isfinite(r)) return;
   const double own = d - o, total = d - r, inherited = o - r;
@@ -196,8 +229,6 @@ void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors, dou
   errors.ownInTotal += own * total;
   worst = std::max(worst, std::fabs(own));
 }
-
-constexpr double leastNormal = std::numeric_limits<float>::min();
 
 void addReals(const Triple& block, Compared& all) {
   OutputErrors& errors = all.errors;

@@ -52,6 +52,7 @@ struct OutputErrors {
   Worst own;
   Found nans, infinities;  ///< of the device
   Found newNans, newInfinities;  ///< of the device where the reference is finite with the device's inputs
+  std::int64_t lost = 0;  ///< components that are not finite on the device where the reference's are
   Found flushed;  ///< zeros of the device where the reference has a number below the smallest normal float
   std::int64_t integers = 0;  ///< components of integers and booleans
   Found ownDecisions, decisions;  ///< integers that differ from o, from r
@@ -65,11 +66,16 @@ struct OutputErrors {
   double relativeOwn() const { return relative(own2); }
   double relativeInherited() const { return relative(inherited2); }
   double relativeTotal() const { return relative(total2); }
+  /// Likewise, but infinite if components are not finite where the reference's are: no digit of them is right.
+  double reportedOwn() const;
+  double reportedTotal() const;
   /// The relative error of integers, but at most the share that differs: an integer may be a number or a name.
   double relativeIntegers() const;
   /// The share of the total error that the call added itself, by projection on the total: 0 to 1.
   double ownShare() const;
   double scale() const;  ///< the root mean square of the reference's components
+  /// The root mean square of the total error; 0 if no components are finite.
+  double absoluteTotal() const;
 
  private:
   double relative(double squares) const;
@@ -85,6 +91,9 @@ bool haveSameBits(const NativeStream& a, const NativeStream& b);
 
 /// Whether components of this type are compared as real numbers.
 bool isReal(program::Scalar scalar);
+
+/// How many of an element's components are.
+std::int64_t realComponents(const program::Element& element);
 
 /// Sum over all floats of the square of what rounding to half changes.
 double squaresOfHalfRounding(const NativeStream& stream);

@@ -71,15 +71,16 @@ void forNumbers(const program::Element& element, Use&& use) {
   }
 }
 
-std::string typeName(Scalar scalar) {
+/// `storage`: of the stream that holds them, or Single.
+std::string typeName(Scalar scalar, Storage storage) {
   switch (scalar) {
-    case Scalar::Float: return "float";
+    case Scalar::Float: return storage == Storage::Half ? "half" : "float";
     case Scalar::Double: return "double";
     case Scalar::Half: return "half";
-    case Scalar::Unorm8:
-    case Scalar::Unorm16: return "unorm";
-    case Scalar::Snorm8:
-    case Scalar::Snorm16: return "snorm";
+    case Scalar::Unorm8: return "unorm8";
+    case Scalar::Snorm8: return "snorm8";
+    case Scalar::Unorm16: return "unorm16";
+    case Scalar::Snorm16: return "snorm16";
     case Scalar::Bool: return "bool";
     case Scalar::Uint:
     case Scalar::Ulong:
@@ -102,7 +103,7 @@ void narrowRange(GivenRecord& record, const std::optional<program::ValueRange>& 
 
 /// The number of the record of a parameter, which exists then.
 std::size_t recordFor(shadow::Report& report, const program::Kernel& kernel,
-                      const program::Parameter& parameter, const program::Element& element) {
+                      const program::Parameter& parameter, const program::Element& element, Storage storage) {
   const int number = Recorder::kernel(report, kernel.name);
   std::vector<GivenRecord>& given = report.given;
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -114,7 +115,7 @@ std::size_t recordFor(shadow::Report& report, const program::Kernel& kernel,
   record.type = element.name;
   bool isFirst = true;
   forNumbers(element, [&](Scalar scalar, std::size_t) {
-    if (std::exchange(isFirst, false)) record.scalar = typeName(scalar);
+    if (std::exchange(isFirst, false)) record.scalar = typeName(scalar, storage);
   });
   narrowRange(record, parameter.range);
   return given.size() - 1;
@@ -179,12 +180,16 @@ void GivenArguments::examineValue(std::size_t argument) {
   const shadow::Options& options = device_.recorder().options();
   if (options.listsGiven) {
     Recorder::Access report(device_.recorder());
-    addElements(report->given[recordFor(*report, call_.kernel, parameter, element)], element, given, 1);
+    addElements(report->given[recordFor(*report, call_.kernel, parameter, element, Storage::Single)], element,
+                given, 1);
   }
-  for (const Setting& setting : options.settings) {
+  for (std::size_t i = 0; i < options.settings.size(); ++i) {
+    const Setting& setting = options.settings[i];
     if (!concerns(setting, call_.kernel, parameter)) continue;
     values_.emplace_back(given, given + element.size);
-    if (apply(setting, element, values_.back().data(), 1)) arguments_[argument].value = values_.back().data();
+    if (!apply(setting, element, values_.back().data(), 1)) continue;
+    arguments_[argument].value = values_.back().data();
+    device_.recorder().noteApplied(i);
   }
 }
 
@@ -192,9 +197,10 @@ void GivenArguments::examineStream(std::size_t argument, ShadowStream& stream) {
   const program::Parameter& parameter = call_.kernel.parameters[argument];
   const shadow::Options& options = device_.recorder().options();
   if (stream.last.given >= 0) {  // another parameter has been given these elements before
+    if (!options.listsGiven) return;
     Recorder::Access report(device_.recorder());
     const auto number = static_cast<std::size_t>(stream.last.given);
-    if (number < report->given.size()) narrowRange(report->given[number], parameter.range);
+    narrowRange(report->given[number], parameter.range);
     return;
   }
   const program::Element& element = *stream.element;
@@ -202,18 +208,21 @@ void GivenArguments::examineStream(std::size_t argument, ShadowStream& stream) {
   auto bytes = detail::hostVector<std::byte>(bytesOf(count, element.size));
   detail::read(detail::wholeRegion(&stream.inner()), bytes.data(), static_cast<std::size_t>(count));
   int record = 0;
-  {
+  if (options.listsGiven) {
     Recorder::Access report(device_.recorder());
-    const std::size_t number = recordFor(*report, call_.kernel, parameter, element);
+    const std::size_t number = recordFor(*report, call_.kernel, parameter, element, stream.storage);
     report->given[number].isStream = true;
     report->given[number].stream = stream.name;
     addElements(report->given[number], element, bytes.data(), count);
     record = static_cast<int>(number);
   }
   bool isChanged = false;
-  for (const Setting& setting : options.settings) {
-    if (!concerns(setting, call_.kernel, parameter)) continue;
-    isChanged = apply(setting, element, bytes.data(), count) || isChanged;
+  for (std::size_t i = 0; i < options.settings.size(); ++i) {
+    const Setting& setting = options.settings[i];
+    if (!concerns(setting, call_.kernel, parameter) || !apply(setting, element, bytes.data(), count))
+      continue;
+    device_.recorder().noteApplied(i);
+    isChanged = true;
   }
   if (isChanged) stream.write(detail::wholeRegion(&stream), bytes.data());
   stream.last.given = record;

@@ -51,6 +51,7 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
   hasFailed = true;
   try {
     Options options = parseOptions(option);
+    options.name(rankOfProcess().ranks > 1 ? "ranks" : std::to_string(::getpid()));
     auto* const made = new Recorder(std::move(options), device);
     const bool isFirst = made->report_.rank == 0;
     if (isFirst) ::unlink((made->options().json() + ".ranks").c_str());  // of a run that was cut off
@@ -75,6 +76,7 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
 
 Recorder::Recorder(Options options, const std::string& device) : process_(::getpid()) {
   report_.options = std::move(options);
+  applied_.resize(report_.options.settings.size());
   report_.program = commandLine();
   report_.device = device;
   const RankOfProcess process = rankOfProcess();
@@ -120,6 +122,11 @@ void Recorder::keepInputs(const std::string& kernel, RecordedInputs inputs) {
   inputs_.insert_or_assign(kernel, std::move(inputs));
 }
 
+void Recorder::noteApplied(std::size_t setting) {
+  const std::lock_guard lock(mutex_);
+  applied_[setting] = true;
+}
+
 void Recorder::note(const std::string& text) {
   const std::lock_guard lock(mutex_);
   constexpr std::size_t most = 100;
@@ -129,12 +136,13 @@ void Recorder::note(const std::string& text) {
 }
 
 void Recorder::writeSometimes() {
-  // the report costs little beside the interval
-  constexpr std::chrono::seconds interval(10);
-  const auto now = std::chrono::steady_clock::now();
+  // Soon at first, so that a program that hangs or is killed early leaves a report; the report costs little beside the interval.
+  using Clock = std::chrono::steady_clock;
+  constexpr Clock::duration longest = std::chrono::seconds(10), shortest = std::chrono::milliseconds(100);
+  const auto now = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    if (now - lastWrite_ < interval) return;
+    if (now - lastWrite_ < std::clamp(lastWrite_ - start_, shortest, longest)) return;
     lastWrite_ = now;
   }
   write(false);
@@ -148,6 +156,12 @@ void Recorder::write(bool hasEnded) {
     report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     report.ended =
         hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
+    for (std::size_t i = 0; hasEnded && i < applied_.size(); ++i) {
+      if (applied_[i]) continue;
+      const Setting& setting = report.options.settings[i];
+      report.notes.push_back(fmt::format("set={}.{} has changed nothing: the host gives no such number",
+                                         setting.kernel, setting.parameter));
+    }
     if (hasEnded && !report.options.inputs.empty() && report.rank == 0) {
       const std::string problem = writeInputs(report.options.inputs, inputs_);
       if (!problem.empty()) say(problem);

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "shadow/recorded_inputs.hpp"
 #include "shadow/report.hpp"
@@ -51,6 +52,8 @@ class Recorder {
   std::string nameOfKernel(int kernel);
   /// Takes the place of inputs of the kernel that it has.
   void keepInputs(const std::string& kernel, RecordedInputs inputs);
+  /// A value of the option set= has been put in the place of another.
+  void noteApplied(std::size_t setting);
   /// Adds a note once.
   void note(const std::string& text);
 
@@ -69,6 +72,7 @@ class Recorder {
 
   std::mutex mutex_;
   Report report_;
+  std::vector<bool> applied_;  ///< of the option set=
   std::map<std::string, RecordedInputs> inputs_;  ///< of each kernel's worst call, if they are asked for
   const int process_;
   int devices_ = 0;

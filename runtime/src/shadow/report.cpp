@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -14,8 +16,12 @@ namespace {
 
 /// The larger errors of two calls, of which the second comes later.
 Series::Point largest(const Series::Point& a, const Series::Point& b) {
-  return {b.call, std::fmax(a.own, b.own), std::fmax(a.inherited, b.inherited), std::fmax(a.total, b.total),
-          std::fmax(a.absolute, b.absolute)};
+  return {b.call,
+          std::fmax(a.own, b.own),
+          std::fmax(a.inherited, b.inherited),
+          std::fmax(a.total, b.total),
+          std::fmax(a.absolute, b.absolute),
+          a.isTurned || b.isTurned};
 }
 
 }  // namespace
@@ -120,55 +126,113 @@ void addDecisions(Report& report) {
   }
 }
 
-/// The factor by which an error grows with each call if it grows exponentially, not as rounding errors add up; else 1. It is the
-/// absolute error: where a step is unstable, the exact values grow, too. A growth that has ended because nothing is right any
-/// more counts up to there.
-double growthOf(const Series& series) {
-  constexpr double lost = 0.05, much = 100, steady = 0.75;
+/// How the error of an output grows from call to call, if it does so exponentially and not as rounding errors add up.
+struct Growth {
+  double factor = 1;  ///< with each call of the program
+  double calls = 0;  ///< of the program, over which it grew so
+  bool isOfSolution = false;  ///< what is computed grows as fast, and keeps its sign
+};
+
+/// The points of a series until nothing is right any more. Absolute errors say how errors grow: where a step is unstable, the
+/// exact values may grow, too.
+std::vector<Series::Point> beforeLoss(const Series& series) {
+  constexpr double lost = 0.05;
   std::vector<Series::Point> points;
   for (const Series::Point& point : series.points()) {
     if (point.total > lost || !std::isfinite(point.absolute)) break;
     if (point.absolute > 0) points.push_back(point);
   }
-  constexpr std::size_t least = 24, quarters = 4;
-  if (points.size() < least) return 1;
+  return points;
+}
+
+/// A step that is too long overshoots: the largest waves change their signs with each call. A model that grows so is a rarity.
+bool overshoots(std::span<const Series::Point> points) {
+  const auto turned = std::ranges::count_if(points, &Series::Point::isTurned);
+  return 2 * turned > std::ssize(points);
+}
+
+Growth growthOver(std::span<const Series::Point> points) {
+  const Series::Point &from = points.front(), &to = points.back();
+  const double error = std::log(to.absolute / from.absolute);
+  const double relative = from.total > 0 && to.total > 0 ? std::log(to.total / from.total) : error;
+  const auto calls = static_cast<double>(to.call - from.call);
+  constexpr double most = 0.7;
+  return {std::exp(error / calls), calls, error - relative > most * error && !overshoots(points)};
+}
+
+/// Many points: each quarter of them adds as many digits to the error as the one before.
+Growth longGrowth(const std::vector<Series::Point>& points) {
+  constexpr double much = 100, steady = 0.75;
+  constexpr std::size_t quarters = 4;
   double logarithms[quarters + 1], steps[quarters];
   for (std::size_t q = 0; q <= quarters; ++q)
     logarithms[q] = std::log(points[(points.size() - 1) * q / quarters].absolute);
   for (std::size_t q = 0; q < quarters; ++q) steps[q] = logarithms[q + 1] - logarithms[q];
   // sums of rounding errors grow by a factor of 2 or less from the second quarter to the fourth
   const double grown = steps[1] + steps[2] + steps[3];
-  if (grown < std::log(much) || steps[2] < steady * steps[1] || steps[3] < steady * steps[2]) return 1;
-  const auto calls = static_cast<double>(points.back().call - points[(points.size() - 1) / quarters].call);
-  return std::exp(grown / calls);
+  if (grown < std::log(much) || steps[2] < steady * steps[1] || steps[3] < steady * steps[2]) return {};
+  return growthOver(std::span(points).subspan((points.size() - 1) / quarters));
+}
+
+/// Few points, since nothing is right after them: each has a larger error than the one before, by far, and the solution has not.
+Growth shortGrowth(const std::vector<Series::Point>& points) {
+  constexpr double much = 100, far = 1.4;
+  const std::size_t first = points.size() / 4;
+  for (std::size_t i = first + 1; i < points.size(); ++i) {
+    if (points[i].absolute < far * points[i - 1].absolute) return {};
+  }
+  if (points.back().absolute < much * points[first].absolute) return {};
+  const Growth growth = growthOver(std::span(points).subspan(first));
+  return growth.isOfSolution ? Growth{} : growth;
+}
+
+Growth growthOf(const Series& series) {
+  constexpr std::size_t many = 24, few = 4;
+  const std::vector<Series::Point> points = beforeLoss(series);
+  if (points.size() >= many) return longGrowth(points);
+  return points.size() >= few ? shortGrowth(points) : Growth{};
 }
 
 /// An instability shows in most of what the program computes over and over again.
-void addUnstable(Report& report) {
-  constexpr std::int64_t often = 24;
+std::optional<Verdict> unstableVerdict(const Report& report) {
+  constexpr std::int64_t often = 4;
   const KernelRecord* worst = nullptr;
-  double fastest = 1;
+  Growth fastest;
   int growing = 0, steady = 0;
   for (const KernelRecord& kernel : report.kernels) {
     if (kernel.amplification.count() < often) continue;
     for (const OutputRecord& output : kernel.outputs) {
       if (output.points.points().empty()) continue;
-      const double growth = growthOf(output.points);
-      (growth > 1 ? growing : steady) += 1;
-      if (growth <= fastest) continue;
+      const Growth growth = growthOf(output.points);
+      (growth.factor > 1 ? growing : steady) += 1;
+      if (growth.factor <= fastest.factor) continue;
       fastest = growth;
       worst = &kernel;
     }
   }
-  if (worst == nullptr || growing < steady) return;
-  const double perCall =
-      std::pow(fastest, static_cast<double>(report.calls) / static_cast<double>(worst->calls));
-  report.verdicts.push_back({"unstable", worst->name,
-                             fmt::format("unstable time step: the error grows by a factor of {:.4g} with "
-                                         "each call of {}, for {} calls; or the "
-                                         "model is chaotic",
-                                         perCall, worst->name, worst->calls),
-                             0});
+  if (worst == nullptr || growing < steady) return std::nullopt;
+  const double others = static_cast<double>(report.calls) / static_cast<double>(worst->calls);
+  const std::string growth =
+      fmt::format("the error grows by a factor of {:.4g} with each call of {}, for {:.0f} calls",
+                  std::pow(fastest.factor, others), worst->name, fastest.calls / others);
+  if (!fastest.isOfSolution)
+    return Verdict{"unstable", worst->name,
+                   fmt::format("unstable time step: {}; or the model is chaotic", growth), 0};
+  return Verdict{
+      "growth", worst->name,
+      fmt::format("{}, and so does what it computes: an unstable time step, or a model that grows", growth),
+      0};
+}
+
+/// Whether the first value that is not finite is an infinity, which growth may have led to.
+bool overflowsFirst(const Report& report) {
+  const ExceptionRecord* first = nullptr;
+  for (const ExceptionRecord& each : report.exceptions) {
+    if (each.kind != ExceptionRecord::Kind::Flush &&
+        (first == nullptr || each.first.call < first->first.call))
+      first = &each;
+  }
+  return first != nullptr && first->kind == ExceptionRecord::Kind::Infinity;
 }
 
 const KernelRecord* worstByShare(const Report& report) {
@@ -219,15 +283,20 @@ void addRest(Report& report, const ResultRecord* result) {
 void conclude(Report& report) {
   shareErrors(report);
   const ResultRecord* result = worstResult(report);
+  const std::optional<Verdict> unstable = unstableVerdict(report);
+  const bool isHarmless = unstable && unstable->kind == "growth" && !isGrave(result, 1e-5);
+  const bool isCause = unstable && unstable->kind == "unstable" && overflowsFirst(report);
+  if (isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, false);
   const bool hasDecided = isGrave(result, 1e-4);
   if (hasDecided) addDecisions(report);
-  addUnstable(report);
+  if (unstable && !isHarmless && !isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, true);
   if (isGrave(result, 2e-7)) addShares(report, result);
   if (!hasDecided) addDecisions(report);
   addFlushes(report);
   addRest(report, result);
+  if (isHarmless) report.verdicts.push_back(*unstable);
 }
 
 }  // namespace sk::shadow

@@ -75,6 +75,7 @@ class Series {
     std::int64_t call;
     double own, inherited, total;
     double absolute = 0;  ///< the root mean square of the total error
+    bool isTurned = false;  ///< the call has mostly changed the signs of what it read
   };
   void add(const Point& point);
   /// Takes the larger errors of both, point by point.
@@ -129,8 +130,10 @@ struct ResultRecord {
   double largest = 0, last = 0;  ///< relative errors of the reads
   double scale = 0;  ///< of a value: the largest of the reads, since a sum may be 0 by chance
   std::int64_t differs = 0;  ///< integers that differ
+  std::int64_t numbers = 0;  ///< real components of the last read; 0 if it has none
   std::int64_t withoutValue =
-      0;  ///< elements of a read that are NaN or infinite, whatever the reference has; the most of all reads
+      0;  ///< numbers of a read that are NaN or infinite, whatever the reference has; the most of all reads
+  int exception = -1;  ///< number of the record of what they come from
   std::int64_t notFinite = 0;  ///< elements of the last read that are not finite, where the reference's are
   Shares shares;  ///< of the last read
 };

@@ -108,10 +108,11 @@ std::string result(const Report& report, const ResultRecord& record) {
   });
   return fmt::format(
       R"({{"name":{},"kind":"{}","reads":{},"elements":{},"error":{{"largest":{},"last":{}}},"digits":{:.2f},)"
-      R"("differs":{},"notFinite":{},"withoutValue":{},"shares":{}}})",
+      R"("differs":{},"numbers":{},"notFinite":{},"withoutValue":{},"exception":{},"shares":{}}})",
       jsonString(record.name), record.isValue ? "value" : "read", record.reads, record.elements,
       number(record.largest), number(record.last), survivingDigits(record.largest), record.differs,
-      record.notFinite, record.withoutValue, shares);
+      record.numbers, record.notFinite, record.withoutValue,
+      record.exception < 0 ? "null" : std::to_string(record.exception), shares);
 }
 
 std::string_view kindOf(ExceptionRecord::Kind kind) {
@@ -139,15 +140,21 @@ std::string decision(const Report& report, const DecisionRecord& record) {
                      element(record.first));
 }
 
+/// With all digits, so that it can be given again.
+std::string exactNumber(double value) {
+  return std::isfinite(value) ? fmt::format("{:.17g}", value) : number(value);
+}
+
 std::string given(const Report& report, const GivenRecord& record) {
   const std::string range =
-      record.hasRange ? fmt::format("[{},{}]", number(record.rangeLow), number(record.rangeHigh)) : "null";
+      record.hasRange ? fmt::format("[{},{}]", exactNumber(record.rangeLow), exactNumber(record.rangeHigh))
+                      : "null";
   return fmt::format(
-      R"({{"kernel":{},"parameter":{},"type":{},"scalar":"{}","kind":"{}","stream":{},"low":{},"high":{},"range":{},)"
-      R"("elements":{},"times":{}}})",
+      R"({{"kernel":{},"parameter":{},"type":{},"scalar":"{}","kind":"{}","stream":{},"low":{},"high":{},)"
+      R"("range":{},"elements":{},"times":{}}})",
       jsonString(report.nameOf(record.kernel)), jsonString(record.parameter), jsonString(record.type),
-      record.scalar, record.isStream ? "stream" : "value", jsonString(record.stream), number(record.low),
-      number(record.high), range, record.elements, record.times);
+      record.scalar, record.isStream ? "stream" : "value", jsonString(record.stream), exactNumber(record.low),
+      exactNumber(record.high), range, record.elements, record.times);
 }
 
 std::string loop(const LoopRecord& record) {

@@ -52,7 +52,9 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
   shadow::ResultRecord& result = report->results[Recorder::result(*report, name, false)];
   ++result.reads;
   result.elements = region.shape.size();
-  result.last = std::max(errors.relativeTotal(), errors.relativeIntegers());
+  result.numbers = result.elements * shadow::realComponents(*stream.element);
+  result.last = std::max(errors.reportedTotal(), errors.relativeIntegers());
+  result.exception = stream.errors.exception;
   result.largest = std::max(result.largest, result.last);
   result.differs += errors.decisions.count;
   result.notFinite = errors.newNans.count + errors.newInfinities.count;
@@ -68,7 +70,8 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
 void recordRead(ShadowStream& stream, const StreamRegion& region) {
   stream.noteRead(region);
   ShadowDevice& device = deviceOf(stream);
-  if (!device.isFollowing() || region.shape.size() == 0) return;
+  const bool isForProgram = device.internalWork == 0;  // not for the runtime, as the condition of a loop is
+  if (!device.isFollowing() || region.shape.size() == 0 || !isForProgram) return;
   try {
     recordResult(stream, region);
   } catch (const std::exception& error) {

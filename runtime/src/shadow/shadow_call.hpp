@@ -86,6 +86,7 @@ class CallFollower {
   void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel,
                        shadow::Report& report);
   bool areRead(shadow::ExceptionRecord::Kind kind) const;
+  bool turns(const Written& written) const;
   StreamErrors errorsAfter(const Written& written, const shadow::OutputErrors& errors, int kernel) const;
   void loseOutputs(bool isCounted);
   void giveBack();
@@ -105,6 +106,8 @@ class CallFollower {
   std::string ownProblem_;  ///< why the own error is not known
   bool isWorst_ = false;  ///< no call of its kernel has had a larger own error
   const NativeStream* reference_ = nullptr;  ///< what the output that is recorded is compared with
+  int exception_ =
+      -1;  ///< number of the record of what the output that was recorded last has of NaN or infinity
   double amplification_ = 0;
   double seconds_ = 0, referenceSeconds_ = 0, comparisonSeconds_ = 0;
   std::vector<Read> read_;

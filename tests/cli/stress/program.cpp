@@ -12,7 +12,13 @@
 //   status      ends with status 3
 //   silent      reads nothing
 //   nothing     calls no kernel
+//   accrue      what it computes grows, and so do its errors
+//   vectors     divides vectors by their lengths
+//   far         overflows in floats alone
+//   twice       starts itself
+//   hang        never ends after its last call, if the sum is large
 //   file FILE   writes its results
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +26,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <unistd.h>
 
 #include <sk/sk.hpp>
 
@@ -30,6 +38,14 @@ namespace {
 std::vector<float> hill(int size) {
   std::vector<float> values(static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) values[static_cast<std::size_t>(i)] = i % 7 == 3 ? 2.0f : 0.5f;
+  return values;
+}
+
+std::vector<float> wave(int size) {
+  std::vector<float> values(static_cast<std::size_t>(size));
+  for (int i = 0; i < size; ++i)
+    values[static_cast<std::size_t>(i)] =
+        1 + 0.5f * std::sin(6.2831853f * static_cast<float>(i) / static_cast<float>(size));
   return values;
 }
 
@@ -45,6 +61,7 @@ struct Line {
 
 void runStep(int size, bool isStable) {
   Line line(size);
+  line.u.write(wave(size));
   if (isStable) {
     sk::Stream<float> copy = line.device.stream<float>({size});
     line.u.copyTo(copy);
@@ -98,6 +115,38 @@ void runHost(int size) {
   line.u.read();
 }
 
+void runAccrue(int size) {
+  Line line(size);
+  for (int i = 0; i < 150; ++i) {
+    stressed::accrue(0.01f, line.u, line.v);
+    std::swap(line.u, line.v);
+  }
+  line.u.read();
+}
+
+void runVectors(int size) {
+  sk::Device device;
+  auto d = device.stream<sk::float3>({size}), r = device.stream<sk::float3>({size});
+  d.write(std::vector<sk::float3>(static_cast<std::size_t>(size), sk::float3{0.5f, 0.25f, 1}));
+  stressed::directions(d, r);
+  r.read();
+}
+
+void runFar(int size) {
+  Line line(size);
+  stressed::far(line.u, line.v);
+  line.v.read();
+}
+
+void runHang(int size) {
+  Line line(size);
+  for (int i = 0; i < 40; ++i) {
+    stressed::offset(0.0f, line.u, line.v);
+    usleep(10'000);
+  }
+  if (line.v.read().front() > 1e30f) pause();
+}
+
 void writeResults(const char* file) {
   Line line(10);
   stressed::scale(1.5f, 2, line.u, line.v);
@@ -133,6 +182,14 @@ int main(int argc, char** argv) {
       stressed::scale(1.5f, 2, line.u, line.v);
     }
     if (kind == "nothing") Line line(size);
+    if (kind == "accrue") runAccrue(size);
+    if (kind == "vectors") runVectors(size);
+    if (kind == "far") runFar(size);
+    if (kind == "hang") runHang(size);
+    if (kind == "twice") {
+      runPlain(size);
+      return std::system((std::string(argv[0]) + " plain").c_str());
+    }
     if (kind == "file") writeResults(argv[2]);
   } catch (const sk::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

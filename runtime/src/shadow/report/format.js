@@ -141,6 +141,7 @@ const kindNames = {
   flush: "Flush to zero",
   decision: "Decision",
   unstable: "Unstable",
+  growth: "Growth",
   error: "Error",
   storage: "Storage",
   fine: "Fine",

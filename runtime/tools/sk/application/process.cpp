@@ -2,6 +2,7 @@
 #include "application/process.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -61,6 +62,30 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
   ::_exit(127);
 }
 
+/// While it lives, the signals that ask this process to end are only noted, so that nothing stays behind.
+class SignalGuard {
+ public:
+  SignalGuard() {
+    noted = 0;
+    struct sigaction action = {};
+    action.sa_handler = [](int number) { noted = number; };
+    for (std::size_t i = 0; i < signals.size(); ++i) ::sigaction(signals[i], &action, &before_[i]);
+  }
+  ~SignalGuard() {
+    for (std::size_t i = 0; i < signals.size(); ++i) ::sigaction(signals[i], &before_[i], nullptr);
+  }
+  SignalGuard(const SignalGuard&) = delete;
+  SignalGuard& operator=(const SignalGuard&) = delete;
+
+  /// The one that has come; 0 if none has.
+  static int signal() { return noted; }
+
+ private:
+  static constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
+  static inline volatile std::sig_atomic_t noted = 0;
+  std::array<struct sigaction, signals.size()> before_ = {};
+};
+
 /// Waits for a child until the limit, and ends it and what it has started there. Returns its status; nullopt at the limit.
 std::optional<int> waitFor(pid_t child, std::chrono::duration<double> limit) {
   const auto end = Clock::now() + limit;
@@ -69,7 +94,7 @@ std::optional<int> waitFor(pid_t child, std::chrono::duration<double> limit) {
     const pid_t ended = ::waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
     if (ended < 0 && errno != EINTR) return std::nullopt;
-    if (Clock::now() > end) break;
+    if (Clock::now() > end || SignalGuard::signal() != 0) break;
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 2, std::chrono::microseconds(10'000));
   }
@@ -100,7 +125,9 @@ std::string lastLines(const std::filesystem::path& file) {
 
 /// Whether a program is found as execvp finds it.
 bool isProgram(const std::string& name) {
-  if (name.find('/') != std::string::npos) return ::access(name.c_str(), X_OK) == 0;
+  if (name.empty()) return false;
+  if (name.find('/') != std::string::npos)
+    return ::access(name.c_str(), X_OK) == 0 && !std::filesystem::is_directory(name);
   const char* const path = std::getenv("PATH");
   std::string folder;
   for (const char c : std::string(path == nullptr ? "/usr/bin:/bin" : path) + ":") {
@@ -147,7 +174,10 @@ EndedProcess runLimited(std::vector<std::string> words, const EnvironmentChanges
   if (child < 0) throw std::runtime_error("cannot start another process: the system has no room for one");
   ::setpgid(child, child);  // by both, as either may be first
   EndedProcess ended;
+  const SignalGuard guard;
   ended.status = waitFor(child, limit);
+  if (SignalGuard::signal() != 0)
+    throw std::runtime_error(fmt::format("interrupted by signal {}", SignalGuard::signal()));
   ended.wall = std::chrono::duration<double>(Clock::now() - begin).count();
   ended.messages = lastLines(messages);
   return ended;

@@ -20,7 +20,8 @@ namespace {
 struct Extremes {
   double smallest;  ///< above 0
   double largest;
-  bool isSigned = true;
+  double least = -largest;
+  bool isNormalized = false;  ///< stands for the numbers between its ends alone
 };
 
 std::optional<Extremes> extremesOf(const std::string& scalar) {
@@ -29,8 +30,10 @@ std::optional<Extremes> extremesOf(const std::string& scalar) {
   if (scalar == "double")
     return Extremes{std::numeric_limits<double>::min(), std::numeric_limits<double>::max()};
   if (scalar == "half") return Extremes{0x1p-14, 65504};
-  if (scalar == "snorm") return Extremes{0x1p-15, 1};
-  if (scalar == "unorm") return Extremes{0x1p-16, 1, false};
+  if (scalar == "snorm8") return Extremes{1.0 / 127, 1, -1, true};
+  if (scalar == "snorm16") return Extremes{1.0 / 32767, 1, -1, true};
+  if (scalar == "unorm8") return Extremes{1.0 / 255, 1, 0, true};
+  if (scalar == "unorm16") return Extremes{1.0 / 65535, 1, 0, true};
   return std::nullopt;
 }
 
@@ -92,12 +95,13 @@ class Maker {
   void addRange(const Range& range) {
     const std::optional<Extremes> extremes = extremesOf(given_.scalar);
     const auto within = [&](double value) { return value >= range.low && value <= range.high; };
-    const double most = extremes ? extremes->largest : 0x1p30;
-    const double low = std::fmax(range.low, -most), high = std::fmin(range.high, most);
+    constexpr double allBits = 0x1p53;  // larger integers are not all doubles
+    const double most = extremes ? extremes->largest : allBits, least = extremes ? extremes->least : -most;
+    const double low = std::fmax(range.low, least), high = std::fmin(range.high, most);
     add(low, low == range.low ? "the lower end of its range" : "the least number in its range");
     add(high, high == range.high ? "the upper end of its range" : "the largest number in its range");
     if (range.low < 0 && range.high > 0) add(0, "in its range");
-    if (extremes && within(extremes->smallest)) add(extremes->smallest, "tiny, in its range");
+    if (extremes && within(extremes->smallest)) addTiny(*extremes, "tiny, in its range");
   }
 
   void addExtremes() {
@@ -105,11 +109,16 @@ class Maker {
     if (isInteger(given_)) return add(1, {});
     const std::optional<Extremes> extremes = extremesOf(given_.scalar);
     if (!extremes) return;
-    add(extremes->smallest, "tiny");
+    addTiny(*extremes, "tiny");
     add(extremes->largest, "huge");
-    if (extremes->isSigned) add(-extremes->largest, "huge");
-    if (given_.scalar == "unorm" || given_.scalar == "snorm") return;
-    if (given_.isStream) add(NAN, {}, given_.elements / 2);
+    if (extremes->least < 0) add(extremes->least, "huge");
+    if (given_.isStream && !extremes->isNormalized) add(NAN, {}, given_.elements / 2);
+  }
+
+  void addTiny(const Extremes& extremes, std::string_view remark) {
+    const std::size_t count = cases_.size();
+    add(extremes.smallest, remark);
+    if (cases_.size() > count) cases_.back().isTiny = true;
   }
 
   void add(double value, std::string_view remark, std::int64_t element = -1) {
@@ -120,7 +129,9 @@ class Maker {
     Case made{.kind = Case::Kind::Value};
     const std::string place = element < 0 ? "" : fmt::format("[{}]", element);
     const std::string all = element < 0 && given_.isStream ? " everywhere" : "";
-    made.text = fmt::format("{}{} = {:.9g}{}", nameOf(group_), place, value, all);
+    const std::string number =
+        isInteger(given_) ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
+    made.text = fmt::format("{}{} = {}{}", nameOf(group_), place, number, all);
     if (!remark.empty()) made.text += fmt::format(", {}", remark);
     for (const Given* each : group_) {
       made.settings.push_back(fmt::format("{}.{}{}:{:.17g}", each->kernel, each->parameter, place, value));
@@ -153,8 +164,20 @@ std::optional<Braces> sizeIn(std::string_view word, std::size_t from) {
 
 std::vector<Case> valueCases(const std::vector<Given>& given, const std::vector<std::string>& only) {
   std::vector<Case> cases;
-  for (const Group& group : groupsOf(given, only)) Maker(group, cases).add();
+  for (const Group& group : groupsOf(given, only)) {
+    const std::optional<Range>& range = group.front()->range;
+    if (!range || range->low <= range->high) Maker(group, cases).add();
+  }
   return cases;
+}
+
+std::vector<std::string> emptyRanges(const std::vector<Given>& given) {
+  std::vector<std::string> names;
+  for (const Given& each : given) {
+    if (each.range && each.range->low > each.range->high)
+      names.push_back(fmt::format("{}.{}", each.kernel, each.parameter));
+  }
+  return names;
 }
 
 bool hasSize(const std::string& word) { return sizeIn(word, 0).has_value(); }

@@ -18,12 +18,16 @@ struct Case {
   std::int64_t size = 0;  ///< in the place of the sizes in braces
   bool mustHold = false;  ///< a declared range has the value, or the program takes sizes
   bool hasNan = false;  ///< a NaN is given, so that some results have none either
+  bool isTiny = false;  ///< the smallest normal number is given, so that results may vanish
 };
 
-/// The ends of what kernels are given: those of declared ranges; else 0, the smallest and the largest number of the type, and a
+/// The ends of what kernels are given: those of declared ranges, which must hold something; else 0, the smallest and the largest number of the type, and a
 /// NaN in the middle of a stream. What the program as it is gives is left out, and so are parameters of no `only` pattern
 /// ("heat::*", "heat::step.dt"); all of them if there is none. Values of one name that several kernels are given alike change together.
 std::vector<Case> valueCases(const std::vector<Given>& given, const std::vector<std::string>& only);
+
+/// Parameters whose elements go to others with ranges that have no number in common, "heat::step.u".
+std::vector<std::string> emptyRanges(const std::vector<Given>& given);
 
 /// Whether a word of a command line has a size in braces: "--size={256}".
 bool hasSize(const std::string& word);

@@ -60,8 +60,21 @@ TEST_CASE("integers are not huge unless a range says so, and booleans stay") {
   CHECK(textsOf({count}) ==
         Texts{"a::k.n = 1, the lower end of its range", "a::k.n = 1000000, the upper end of its range"});
   CHECK(textsOf({{.kernel = "a::k", .parameter = "b", .scalar = "bool", .low = 0, .high = 1}}).empty());
-  const Given colour{.kernel = "a::k", .parameter = "c", .scalar = "unorm", .low = 0, .high = 1};
-  CHECK(textsOf({colour}) == Texts{"a::k.c = 0", "a::k.c = 1.52587891e-05, tiny", "a::k.c = 1, huge"});
+  const Given colour{.kernel = "a::k", .parameter = "c", .scalar = "unorm8", .low = 0, .high = 1};
+  CHECK(textsOf({colour}) == Texts{"a::k.c = 0", "a::k.c = 0.00392156863, tiny", "a::k.c = 1, huge"});
+}
+
+TEST_CASE("ends are numbers of the type") {
+  Given given{.kernel = "a::k", .parameter = "n", .scalar = "uint", .low = 8, .high = 8};
+  given.range = Range{0, 4294967295};
+  CHECK(textsOf({given}) ==
+        Texts{"a::k.n = 0, the lower end of its range", "a::k.n = 4294967295, the upper end of its range"});
+  given.scalar = "unorm8";
+  given.range = Range{-1, 2};
+  CHECK(textsOf({given}).front() == "a::k.n = 0, the least number in its range");
+  given.range = Range{5, 1};
+  CHECK(valueCases({given}, {}).empty());
+  CHECK(emptyRanges({given}) == Texts{"a::k.n"});
 }
 
 TEST_CASE("values that several kernels are given alike change together") {

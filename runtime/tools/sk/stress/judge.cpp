@@ -28,6 +28,8 @@ bool Run::isBroken() const {
   return std::ranges::any_of(findings, [&](const Finding& finding) {
     if (finding.kind == Crash) return true;
     if (finding.kind == Spread) return false;
+    // the model may grow so
+    if (finding.kind == Unstable && seen && seen->growsAlike) return false;
     // a program may refuse a size
     if (finding.kind == Status) return of.kind == Case::Kind::Value && of.mustHold;
     return of.mustHold || of.kind != Case::Kind::Value;
@@ -36,7 +38,7 @@ bool Run::isBroken() const {
 
 double digitsOf(double error) {
   if (!(error > 0)) return std::isnan(error) ? 0 : 16;
-  return std::clamp(-std::log10(error), 0.0, 16.0);
+  return std::clamp(-std::log10(error), 0.0, 16.0) + 0.0;  // not -0
 }
 
 namespace {
@@ -78,25 +80,27 @@ class Judge {
   }
 
   void addResults() {
-    bool isFirst = true;
     for (const Result& result : run_.seen->results) {
       const Result* const before = isPlain_ || !plain_.seen ? nullptr : plain_.seen->resultNamed(result.name);
       if (result.withoutValue <= (before == nullptr ? 0 : before->withoutValue)) continue;
-      std::string text = run_.of.hasNan
-                             ? fmt::format("the NaN spreads to {} of {} of '{}'", result.withoutValue,
-                                           quantity(result.elements, "element", "elements"), result.name)
-                             : fmt::format("{} of {} of '{}' {} NaN or infinite", result.withoutValue,
-                                           quantity(result.elements, "element", "elements"), result.name,
-                                           result.withoutValue == 1 ? "is" : "are");
-      if (isFirst && run_.seen->origin && !run_.of.hasNan) text += originText(*run_.seen->origin);
-      isFirst = false;
+      const bool areElements = result.numbers == result.elements;
+      const std::string all =
+          quantity(result.numbers, areElements ? "element" : "number", areElements ? "elements" : "numbers");
+      std::string text =
+          run_.of.hasNan
+              ? fmt::format("the NaN spreads to {} of {} of '{}'", result.withoutValue, all, result.name)
+              : fmt::format("{} of {} of '{}' {} NaN or infinite", result.withoutValue, all, result.name,
+                            result.withoutValue == 1 ? "is" : "are");
+      const auto exception = static_cast<std::size_t>(result.exception);
+      if (result.exception >= 0 && exception < run_.seen->origins.size() && !run_.of.hasNan)
+        text += originText(run_.seen->origins[exception]);
       add(run_.of.hasNan ? Finding::Kind::Spread : Finding::Kind::NotFinite, text);
     }
   }
 
   static std::string originText(const Origin& origin) {
-    return fmt::format("; the first {} comes from {}, call {}, output '{}'{}",
-                       origin.isNan ? "NaN" : "infinity", origin.kernel, origin.call, origin.output,
+    return fmt::format("; the {} comes from {}, call {}, output '{}'{}", origin.isNan ? "NaN" : "infinity",
+                       origin.kernel, origin.call, origin.output,
                        origin.isInReference ? ", in double as well" : ", where double has a number");
   }
 
@@ -148,7 +152,8 @@ class Judge {
       return finding.kind == Finding::Kind::NotFinite || finding.kind == Finding::Kind::Spread;
     });
     const Result* const worst = run_.seen->worst();
-    if (worst == nullptr || isElsewhere || !(worst->error > large)) return;
+    // what vanishes below the smallest number has no digits, and need not have any
+    if (worst == nullptr || isElsewhere || !(worst->error > large) || run_.of.isTiny) return;
     if (isPlain_) {
       return add(Finding::Kind::Inexact,
                  fmt::format("{:.1f} digits of '{}' survive", digitsOf(worst->error), worst->name));

@@ -16,7 +16,7 @@ Run healthy() {
   run.process.wall = 0.5;
   run.seen = Observation{};
   run.seen->calls = 40;
-  run.seen->results = {{"u", 100, 0, 1e-7}};
+  run.seen->results = {{"u", 100, 100, 0, 1e-7}};
   run.seen->kernels = {{"a::step", 40}};
   run.seen->loops = {{"done", 0, 12}};
   return run;
@@ -75,11 +75,12 @@ TEST_CASE("results that are not finite are named with their origin, and a NaN th
   Run run = atExtreme();
   run.seen->results[0].withoutValue = 3;
   run.seen->results[0].error = 1;
-  run.seen->origin = Origin{false, "a::step", "r", 7, true};
+  run.seen->results[0].exception = 1;
+  run.seen->origins = {{true, "a::other", "r", 3, false}, {false, "a::step", "r", 7, true}};
   const Run broken = judged(run);
   REQUIRE(broken.findings.size() == 1);
   CHECK(broken.findings[0].text ==
-        "3 of 100 elements of 'u' are NaN or infinite; the first infinity comes from a::step, call 7, output "
+        "3 of 100 elements of 'u' are NaN or infinite; the infinity comes from a::step, call 7, output "
         "'r', "
         "in double as well");
   CHECK(broken.isBroken());
@@ -113,4 +114,25 @@ TEST_CASE("errors count where the program as it is has none") {
   plain.seen->unstable = "unstable time step";
   run.findings = findingsIn(run, plain);
   CHECK(run.findings.empty());
+}
+
+TEST_CASE("numbers of vectors are counted, integers have no digits, and tiny numbers may vanish") {
+  Run run = atExtreme();
+  run.seen->results[0] = {"u", 100, 300, 6, 0};
+  CHECK(judged(run).findings[0].text == "6 of 300 numbers of 'u' are NaN or infinite");
+  run.seen->results[0] = {"id", 100, 0, 0, 1};
+  CHECK(judged(run).findings.empty());
+  run.seen->results[0] = {"u", 100, 100, 0, 1};
+  CHECK(judged(run).findings.size() == 1);
+  run.of.isTiny = true;
+  CHECK(judged(run).findings.empty());
+}
+
+TEST_CASE("errors that grow as the solution does are told, and break nothing") {
+  Run run = atExtreme();
+  run.seen->unstable = "the error grows";
+  run = judged(run);
+  CHECK(run.isBroken());
+  run.seen->growsAlike = true;
+  CHECK_FALSE(run.isBroken());
 }

@@ -6,8 +6,11 @@
 namespace sk_tool::stress {
 
 const Result* Observation::worst() const {
-  const auto found = std::ranges::max_element(results, {}, &Result::error);
-  return found == results.end() ? nullptr : &*found;
+  const Result* found = nullptr;
+  for (const Result& result : results) {
+    if (result.numbers > 0 && (found == nullptr || result.error > found->error)) found = &result;
+  }
+  return found;
 }
 
 const Result* Observation::resultNamed(const std::string& name) const {
@@ -39,8 +42,10 @@ Observation observationIn(const Entry& report) {
   seen.calls = report["calls"].integer();
   forEach(report["given"], [&](const Entry& each) { seen.given.push_back(givenIn(each)); });
   forEach(report["results"], [&](const Entry& each) {
-    seen.results.push_back({each["name"].text(), each["elements"].integer(), each["withoutValue"].integer(),
-                            each["error"]["largest"].number()});
+    Result result{each["name"].text(), each["elements"].integer(), each["numbers"].integer(),
+                  each["withoutValue"].integer(), each["error"]["largest"].number()};
+    if (!each["exception"].isNull()) result.exception = static_cast<int>(each["exception"].integer());
+    seen.results.push_back(std::move(result));
   });
   forEach(report["kernels"],
           [&](const Entry& each) { seen.kernels.push_back({each["name"].text(), each["calls"].integer()}); });
@@ -48,13 +53,14 @@ Observation observationIn(const Entry& report) {
     seen.loops.push_back({each["condition"].text(), each["unfinished"].integer(), each["longest"].integer()});
   });
   forEach(report["exceptions"], [&](const Entry& each) {
-    const std::string kind = each["kind"].text();
-    if (kind == "flush" || (seen.origin && seen.origin->call <= each["call"].integer())) return;
-    seen.origin = Origin{kind == "nan", each["kernel"].text(), each["output"].text(), each["call"].integer(),
-                         each["isInReference"].flag()};
+    seen.origins.push_back({each["kind"].text() == "nan", each["kernel"].text(), each["output"].text(),
+                            each["call"].integer(), each["isInReference"].flag()});
   });
   forEach(report["verdicts"], [&](const Entry& each) {
-    if (each["kind"].text() == "unstable") seen.unstable = each["text"].text();
+    const std::string kind = each["kind"].text();
+    if (kind != "unstable" && kind != "growth") return;
+    seen.unstable = each["text"].text();
+    seen.growsAlike = kind == "growth";
   });
   return seen;
 }

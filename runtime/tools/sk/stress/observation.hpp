@@ -21,7 +21,7 @@ struct Range {
 struct Given {
   std::string kernel, parameter;
   std::string
-      scalar;  ///< of its numbers: "float", "double", "half", "unorm", "snorm", "int", "uint" or "bool"
+      scalar;  ///< of its numbers: "float", "double", "half", "unorm8", "snorm8", "unorm16", "snorm16", "int", "uint" or "bool"
   bool isStream = false;
   double low = 0, high = 0;  ///< of all numbers that the program as it is gives
   std::optional<Range> range = {};  ///< that [[range]] declares
@@ -31,8 +31,10 @@ struct Given {
 struct Result {
   std::string name;
   std::int64_t elements = 0;
+  std::int64_t numbers = 0;  ///< real numbers in them; 0 if they have integers alone
   std::int64_t withoutValue = 0;  ///< NaN or infinite
   double error = 0;  ///< relative, the largest of all reads
+  int exception = -1;  ///< number of what the last read's come from
 };
 
 struct Calls {
@@ -40,7 +42,7 @@ struct Calls {
   std::int64_t calls = 0;
 };
 
-/// Where the first NaN or infinity comes from.
+/// Where a NaN or infinity comes from.
 struct Origin {
   bool isNan = false;
   std::string kernel, output;
@@ -61,10 +63,11 @@ struct Observation {
   std::vector<Result> results;
   std::vector<Calls> kernels;
   std::vector<LoopEnd> loops;
-  std::optional<Origin> origin;
+  std::vector<Origin> origins;  ///< in the order of the report
   std::string unstable;  ///< the verdict on an unstable step; empty if there is none
+  bool growsAlike = false;  ///< errors grow as the solution does
 
-  /// The largest relative error of the results.
+  /// The result of real numbers with the largest relative error.
   const Result* worst() const;
   const Result* resultNamed(const std::string& name) const;
 };

@@ -43,9 +43,13 @@ std::string cases(std::size_t count) { return fmt::format("{} case{}", count, co
 void printPlain(const Report& report) {
   const Run& plain = report.runs.front();
   fmt::print("{} on {}\n", report.command, report.device);
-  fmt::print("as it is: {:.2g} s beside its shadow, {} calls", plain.process.wall, plain.seen->calls);
-  if (const Result* const worst = plain.seen->worst())
-    fmt::print("; at least {:.1f} digits of '{}' survive", digitsOf(worst->error), worst->name);
+  fmt::print("as it is: {:.2g} s beside its shadow, {} call{}", plain.process.wall, plain.seen->calls,
+             plain.seen->calls == 1 ? "" : "s");
+  if (const Result* const worst = plain.seen->worst()) {
+    const std::string digits =
+        worst->error > 0 ? fmt::format("at least {:.1f} digits", digitsOf(worst->error)) : "all digits";
+    fmt::print("; {} of '{}' survive", digits, worst->name);
+  }
   fmt::print("\n");
 }
 
@@ -91,6 +95,7 @@ Json jsonOf(const Run& run) {
     for (const Result& result : run.seen->results) {
       results.push_back({{"name", result.name},
                          {"elements", result.elements},
+                         {"numbers", result.numbers},
                          {"withoutValue", result.withoutValue},
                          {"error", numberOf(result.error)}});
     }
