@@ -82,6 +82,7 @@ class Executor {
   Numbers binaryOf(Frame& frame, const Path& path, const ir::Binary& binary);
   Numbers binary(ir::BinaryOp op, ir::Type left, ir::Type right, const Numbers& a, const Numbers& b);
   NodeId binary(ir::BinaryOp op, ir::Scalar type, NodeId a, NodeId b);
+  std::optional<NodeId> comparison(ir::BinaryOp op, NodeId a, NodeId b);
   NodeId integerOperation(ir::BinaryOp op, ir::Scalar type, NodeId a, NodeId b);
   Numbers product(ir::Type left, const Numbers& a, const Numbers& b);
   Numbers unaryOf(Frame& frame, const Path& path, const ir::Unary& unary);

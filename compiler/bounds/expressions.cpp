@@ -179,27 +179,28 @@ NodeId Executor::binary(BinaryOp op, Scalar type, NodeId a, NodeId b) {
     return op == BinaryOp::Equal ? same : graph_.negation(same);
   }
   if (!isReal(type)) return integerOperation(op, type, a, b);
+  if (const std::optional<NodeId> truth = comparison(op, a, b)) return *truth;
   switch (op) {
     case BinaryOp::Add: return arithmetic_.add(type, a, b);
     case BinaryOp::Sub: return arithmetic_.subtract(type, a, b);
     case BinaryOp::Mul: return arithmetic_.multiply(type, a, b);
     case BinaryOp::Div: return arithmetic_.divide(type, a, b);
+    default: break;
+  }
+  throw NotBounded(fmt::format("the operator {} of these operands", spelling(op)), arithmetic_.loc());
+}
+
+/// Nullopt if the operator compares nothing.
+std::optional<NodeId> Executor::comparison(BinaryOp op, NodeId a, NodeId b) {
+  switch (op) {
     case BinaryOp::Less: return arithmetic_.less(a, b);
     case BinaryOp::LessEqual: return arithmetic_.lessEqual(a, b);
     case BinaryOp::Greater: return arithmetic_.less(b, a);
     case BinaryOp::GreaterEqual: return arithmetic_.lessEqual(b, a);
     case BinaryOp::Equal: return arithmetic_.equal(a, b);
     case BinaryOp::NotEqual: return graph_.negation(arithmetic_.equal(a, b));
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
+    default: return std::nullopt;
   }
-  throw NotBounded(fmt::format("the operator {} of these operands", spelling(op)), arithmetic_.loc());
 }
 
 NodeId Executor::integerOperation(BinaryOp op, Scalar type, NodeId a, NodeId b) {
@@ -211,18 +212,13 @@ NodeId Executor::integerOperation(BinaryOp op, Scalar type, NodeId a, NodeId b) 
   }
   if (type != Scalar::Int && type != Scalar::Uint)
     throw NotBounded(fmt::format("a {} that is not constant", row(type).spelling), arithmetic_.loc());
+  if (const std::optional<NodeId> truth = comparison(op, a, b)) return *truth;
   switch (op) {
     case BinaryOp::Add: return arithmetic_.add(type, a, b);
     case BinaryOp::Sub: return arithmetic_.subtract(type, a, b);
     case BinaryOp::Mul: return arithmetic_.multiply(type, a, b);
     case BinaryOp::Div: return arithmetic_.divide(type, a, b);
     case BinaryOp::Rem: return arithmetic_.remainder(type, a, b, Op::Truncate);
-    case BinaryOp::Less: return arithmetic_.less(a, b);
-    case BinaryOp::LessEqual: return arithmetic_.lessEqual(a, b);
-    case BinaryOp::Greater: return arithmetic_.less(b, a);
-    case BinaryOp::GreaterEqual: return arithmetic_.lessEqual(b, a);
-    case BinaryOp::Equal: return arithmetic_.equal(a, b);
-    case BinaryOp::NotEqual: return graph_.negation(arithmetic_.equal(a, b));
     case BinaryOp::ShiftLeft:
       if (graph_.isExact(b) && graph_[b].value >= 0 && graph_[b].value < 31)
         return arithmetic_.multiply(
@@ -235,11 +231,7 @@ NodeId Executor::integerOperation(BinaryOp op, Scalar type, NodeId a, NodeId b) 
         return arithmetic_.step(Op::Floor, type, graph_.add(quotient));
       }
       break;
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
+    default: break;
   }
   throw NotBounded("an operation on the bits of a value that is not constant", arithmetic_.loc());
 }

@@ -66,7 +66,16 @@ ResolvedReduction checked(const Reduction& reduction, std::span<const Argument> 
   return call;
 }
 
-/// The arguments of a device that stands in front of another one, as those of that one.
+int lastDivided(const domain::Decomposition& parts) {
+  int last = 0;
+  for (int d = 0; d < parts.split().rank(); ++d) {
+    if (parts.split()[d] > 1) last = d;
+  }
+  return last;
+}
+
+}  // namespace
+
 std::vector<Argument> underlying(std::span<const Argument> given) {
   std::vector<Argument> arguments(given.begin(), given.end());
   for (Argument& argument : arguments) {
@@ -77,19 +86,10 @@ std::vector<Argument> underlying(std::span<const Argument> given) {
 
 BoxedArguments underlying(const BoxedArguments& given) {
   BoxedArguments boxed = given;
+  boxed.arguments = underlying(std::span<const Argument>(given.arguments));
   if (boxed.over && boxed.over->device != nullptr) boxed.over->device = &boxed.over->device->underlying();
   return boxed;
 }
-
-int lastDivided(const domain::Decomposition& parts) {
-  int last = 0;
-  for (int d = 0; d < parts.split().rank(); ++d) {
-    if (parts.split()[d] > 1) last = d;
-  }
-  return last;
-}
-
-}  // namespace
 
 RankReduction::RankReduction(DomainState& domain, const Reduction& reduction, const BoxedArguments& arguments,
                              const CallOptions& options, const Box& box)

@@ -21,6 +21,11 @@
 
 namespace sk::mpi {
 
+/// The arguments of a device that stands in front of another one, as those of that one. What is written is to be noted by
+/// StreamState::noteUnderlyingWritten().
+std::vector<Argument> underlying(std::span<const Argument> given);
+BoxedArguments underlying(const BoxedArguments& given);
+
 /// A reduction of this rank's elements, and what makes results of its accumulators.
 struct Variant {
   const program::Reduction* reduction;

@@ -121,7 +121,8 @@ void storeOwnOutputs(DomainState& domain, const Reduction& reduction, std::span<
   if (domain::isEmpty(own)) return;
   CallOptions others = options;
   others.box = {};
-  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), own, options.over);
+  const BoxedArguments local =
+      mpi::underlying(argumentsIn(reduction.fold, mpi::ownArguments(arguments), own, options.over));
   others.over = local.over;
   void* const toValues[] = {nullptr};
   ResolvedReduction call = checkReduction(reduction, local.arguments, toValues, {}, local.placed, local.over);
@@ -135,7 +136,11 @@ void noteOwnWritten(DomainState& domain, const Reduction& reduction, std::span<c
   const Box own = domain::intersection(domain.own, boxOrAll(options.box, domain.parts.whole()));
   for (std::size_t i = 0; i < arguments.size() && !domain::isEmpty(own); ++i) {
     if (reduction.fold.parameters[i].role != Role::Output) continue;
-    if (DomainStreamState* const stream = domainStream(arguments[i].region)) noteWritten(stream->part(own));
+    if (DomainStreamState* const stream = domainStream(arguments[i].region)) {
+      const StreamRegion part = stream->part(own);
+      part.stream->noteUnderlyingWritten();
+      noteWritten(part);
+    }
   }
 }
 

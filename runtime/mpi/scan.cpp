@@ -17,6 +17,7 @@
 #include "call_details.hpp"
 #include "call_plan.hpp"
 #include "domain_state.hpp"
+#include "rank_reduction.hpp"
 
 namespace sk {
 
@@ -46,11 +47,7 @@ class RankScan {
     }
     // ranks exchange what the devices hold, whatever stands in front of these
     scanned_ = local_;
-    for (std::vector<Argument>* all : {&local_, &given_, &ownParts_}) {
-      for (Argument& argument : *all) {
-        if (argument.region.stream != nullptr) argument.region.stream = &argument.region.stream->underlying();
-      }
-    }
+    for (std::vector<Argument>* all : {&local_, &given_, &ownParts_}) *all = mpi::underlying(*all);
   }
 
   int dimension() const { return dimension_; }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "call/range_values.hpp"
 #include "sk/narrow.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "support/scalar_types.hpp"
 
 namespace sk {
 
@@ -49,8 +49,7 @@ double ofPair(double number) {
 /// The text of a number that is not in the range; nullopt if it is.
 template <class T>
 std::optional<std::string> textIfOutside(const ValueRange& range, Storage storage, const std::byte* bytes) {
-  T stored;
-  std::memcpy(&stored, bytes, sizeof stored);
+  const T stored = componentAt<T>(bytes);
   const auto compare = [](auto value, auto low, auto high) {
     return value >= low && value <= high ? std::nullopt : std::optional(fmt::format("{}", value));
   };
@@ -70,25 +69,12 @@ std::optional<std::string> textIfOutside(const ValueRange& range, Storage storag
 
 std::optional<std::string> textIfOutside(Scalar scalar, Storage storage, const ValueRange& range,
                                          const std::byte* bytes) {
-  switch (scalar) {
-    case Scalar::Bool: return std::nullopt;  // has no range
-    case Scalar::Int: return textIfOutside<std::int32_t>(range, storage, bytes);
-    case Scalar::Uint: return textIfOutside<std::uint32_t>(range, storage, bytes);
-    case Scalar::Float: return textIfOutside<float>(range, storage, bytes);
-    case Scalar::Double: return textIfOutside<double>(range, storage, bytes);
-    case Scalar::Long: return textIfOutside<std::int64_t>(range, storage, bytes);
-    case Scalar::Ulong: return textIfOutside<std::uint64_t>(range, storage, bytes);
-    case Scalar::Half: return textIfOutside<half>(range, storage, bytes);
-    case Scalar::Char: return textIfOutside<std::int8_t>(range, storage, bytes);
-    case Scalar::Uchar: return textIfOutside<std::uint8_t>(range, storage, bytes);
-    case Scalar::Short: return textIfOutside<std::int16_t>(range, storage, bytes);
-    case Scalar::Ushort: return textIfOutside<std::uint16_t>(range, storage, bytes);
-    case Scalar::Unorm8: return textIfOutside<unorm8>(range, storage, bytes);
-    case Scalar::Snorm8: return textIfOutside<snorm8>(range, storage, bytes);
-    case Scalar::Unorm16: return textIfOutside<unorm16>(range, storage, bytes);
-    case Scalar::Snorm16: return textIfOutside<snorm16>(range, storage, bytes);
-  }
-  return std::nullopt;
+  return withScalarType(scalar, [&]<class T>(T) {
+    if constexpr (std::is_same_v<T, bool>)
+      return std::optional<std::string>();  // has no range
+    else
+      return textIfOutside<T>(range, storage, bytes);
+  });
 }
 
 /// ".y", "[2]", "[0].x".

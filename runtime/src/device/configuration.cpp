@@ -314,6 +314,7 @@ TableRange Configuration::rangeOf(const program::Table& table) const {
 }
 
 CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOptions& call) const {
+  if (kernels_.empty()) return merged(call, kernel.options);
   CallOptions forced, unforced = call;
   for (const std::string_view name : {kernel.name, std::string_view("*")}) {
     const auto found = kernels_.find(name);

@@ -258,6 +258,7 @@ std::int64_t LoopState::runAndAsk(const StreamRegion& done, std::int64_t every, 
     ran += times;
     isDone = isTrue(done);
   }
+  device_->noteLoopEnd(done, ran, isDone);
   return ran;
 }
 

@@ -4,64 +4,21 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
-#include "sk/narrow.hpp"
+#include "sk/scalar_bytes.hpp"
+#include "support/scalar_types.hpp"
 
 namespace sk::results {
 
 namespace {
 
-std::size_t hostBytesOf(program::Scalar scalar) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Bool:
-    case Char:
-    case Uchar:
-    case Unorm8:
-    case Snorm8: return 1;
-    case Half:
-    case Short:
-    case Ushort:
-    case Unorm16:
-    case Snorm16: return 2;
-    case Int:
-    case Uint:
-    case Float: return 4;
-    case Double:
-    case Long:
-    case Ulong: return 8;
-  }
-  return 0;
-}
-
 Values::Kind kindOf(program::Scalar scalar) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Float:
-    case Half:
-    case Unorm8:
-    case Snorm8:
-    case Unorm16:
-    case Snorm16: return Values::Kind::Single;
-    case Double: return Values::Kind::Double;
-    case Bool:
-    case Int:
-    case Uint:
-    case Long:
-    case Ulong:
-    case Char:
-    case Uchar:
-    case Short:
-    case Ushort: return Values::Kind::Integer;
-  }
-  return Values::Kind::Integer;
-}
-
-template <class T>
-T valueAt(const std::byte* place) {
-  T value;
-  std::memcpy(&value, place, sizeof value);
-  return value;
+  return withScalarType(scalar, []<class T>(T) {
+    return std::is_integral_v<T>       ? Values::Kind::Integer
+           : std::is_same_v<T, double> ? Values::Kind::Double
+                                       : Values::Kind::Single;
+  });
 }
 
 template <class T>
@@ -71,25 +28,16 @@ void append(std::string& bytes, T value) {
 
 /// Appends a component as Values holds it.
 void appendComponent(std::string& bytes, program::Scalar scalar, const std::byte* place) {
-  using enum program::Scalar;
-  switch (scalar) {
-    case Float: return append(bytes, valueAt<float>(place));
-    case Half: return append(bytes, static_cast<float>(valueAt<half>(place)));
-    case Unorm8: return append(bytes, static_cast<float>(valueAt<unorm8>(place)));
-    case Snorm8: return append(bytes, static_cast<float>(valueAt<snorm8>(place)));
-    case Unorm16: return append(bytes, static_cast<float>(valueAt<unorm16>(place)));
-    case Snorm16: return append(bytes, static_cast<float>(valueAt<snorm16>(place)));
-    case Double: return append(bytes, valueAt<double>(place));
-    case Bool:
-    case Uchar: return append(bytes, std::int64_t{valueAt<std::uint8_t>(place)});
-    case Char: return append(bytes, std::int64_t{valueAt<std::int8_t>(place)});
-    case Short: return append(bytes, std::int64_t{valueAt<std::int16_t>(place)});
-    case Ushort: return append(bytes, std::int64_t{valueAt<std::uint16_t>(place)});
-    case Int: return append(bytes, std::int64_t{valueAt<std::int32_t>(place)});
-    case Uint: return append(bytes, std::int64_t{valueAt<std::uint32_t>(place)});
-    case Long:
-    case Ulong: return append(bytes, valueAt<std::int64_t>(place));
-  }
+  withScalarType(scalar, [&]<class T>(T) {
+    const T value = componentAt<T>(place);
+    if constexpr (std::is_same_v<T, double>) {
+      append(bytes, value);
+    } else if constexpr (std::is_integral_v<T>) {
+      append(bytes, static_cast<std::int64_t>(value));
+    } else {
+      append(bytes, static_cast<float>(value));
+    }
+  });
 }
 
 std::size_t componentsOf(std::span<const program::Field> fields) {
@@ -127,7 +75,7 @@ Values valuesOf(const Member& member, const program::Element& element, const std
     for (const program::Field& field : member.fields) {
       const std::byte* const first = elements + i * element.size + field.offset;
       for (std::size_t k = 0; k < field.width; ++k)
-        appendComponent(values.bytes, field.scalar, first + k * hostBytesOf(field.scalar));
+        appendComponent(values.bytes, field.scalar, first + k * program::hostBytes(field.scalar));
     }
   }
   return values;

@@ -139,7 +139,16 @@ void visit(Archive& archive, StreamRecord& it) {
 template <class Archive>
 void visit(Archive& archive, ResultRecord& it) {
   archive(it.name, it.isValue, it.reads, it.elements, it.largest, it.last, it.differs, it.notFinite,
-          it.shares);
+          it.withoutValue, it.shares);
+}
+template <class Archive>
+void visit(Archive& archive, GivenRecord& it) {
+  archive(it.kernel, it.parameter, it.type, it.scalar, it.isStream, it.stream, it.low, it.high, it.hasRange,
+          it.rangeLow, it.rangeHigh, it.elements, it.times);
+}
+template <class Archive>
+void visit(Archive& archive, LoopRecord& it) {
+  archive(it.condition, it.runs, it.unfinished, it.longest);
 }
 template <class Archive>
 void visit(Archive& archive, Path& it) {
@@ -157,7 +166,7 @@ template <class Archive>
 void visit(Archive& archive, Report& it) {
   archive(it.program, it.device, it.rank, it.programSeconds, it.deviceSeconds, it.referenceSeconds,
           it.comparisonSeconds, it.calls, it.followed, it.kernels, it.streams, it.results, it.exceptions,
-          it.decisions, it.notes);
+          it.decisions, it.given, it.loops, it.notes);
 }
 
 /// A file that no other process uses while this object lives.
@@ -291,9 +300,30 @@ void add(ResultRecord& to, const ResultRecord& from) {
   to.elements += from.elements;
   to.differs += from.differs;
   to.notFinite += from.notFinite;
+  to.withoutValue += from.withoutValue;
   to.shares.add(from.shares, std::fmin(1, from.last));
   to.largest = std::fmax(to.largest, from.largest);
   to.last = std::fmax(to.last, from.last);
+}
+
+void addGiven(Report& to, const GivenRecord& from) {
+  const auto found = std::ranges::find_if(to.given, [&](const GivenRecord& each) {
+    return each.kernel == from.kernel && each.parameter == from.parameter;
+  });
+  if (found == to.given.end()) return to.given.push_back(from);
+  found->low = std::fmin(found->low, from.low);
+  found->high = std::fmax(found->high, from.high);
+  found->elements = std::max(found->elements, from.elements);
+  found->times = std::max(found->times, from.times);
+}
+
+/// Ranks run their loops together.
+void addLoop(Report& to, const LoopRecord& from) {
+  const auto found = std::ranges::find(to.loops, from.condition, &LoopRecord::condition);
+  if (found == to.loops.end()) return to.loops.push_back(from);
+  found->runs = std::max(found->runs, from.runs);
+  found->unfinished = std::max(found->unfinished, from.unfinished);
+  found->longest = std::max(found->longest, from.longest);
 }
 
 }  // namespace
@@ -328,6 +358,11 @@ Report merged(std::vector<Report> reports) {
       decision.kernel = numberOf(decision.kernel);
       all.decisions.push_back(decision);
     }
+    for (GivenRecord& given : report.given) {
+      given.kernel = numberOf(given.kernel);
+      addGiven(all, given);
+    }
+    for (const LoopRecord& loop : report.loops) addLoop(all, loop);
     for (const std::string& note : report.notes) {
       if (std::ranges::find(all.notes, note) == all.notes.end()) all.notes.push_back(note);
     }

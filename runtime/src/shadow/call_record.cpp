@@ -16,6 +16,7 @@
 #include "device/region.hpp"
 #include "shadow/copies.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "support/scalar_types.hpp"
 
 namespace sk {
 
@@ -103,24 +104,6 @@ std::int64_t numberInStream(const AffineRegion& region, std::int64_t number) {
   return result;
 }
 
-double hostValue(const std::byte* bytes, program::Scalar scalar) {
-  const auto as = [&]<class T>(T value) {
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (scalar) {
-    case program::Scalar::Float: return as(float{});
-    case program::Scalar::Double: return as(double{});
-    case program::Scalar::Int: return as(std::int32_t{});
-    case program::Scalar::Uint: return as(std::uint32_t{});
-    case program::Scalar::Long: return as(std::int64_t{});
-    case program::Scalar::Ulong: return as(std::uint64_t{});
-    case program::Scalar::Bool:
-    case program::Scalar::Uchar: return as(std::uint8_t{});
-    default: return as(std::int8_t{});
-  }
-}
-
 void addUniform(std::vector<shadow::Input>& inputs, const program::Parameter& parameter, const void* value) {
   int component = 0;
   for (const program::Field& field : parameter.element->fields) {
@@ -128,7 +111,7 @@ void addUniform(std::vector<shadow::Input>& inputs, const program::Parameter& pa
       const auto* const at =
           static_cast<const std::byte*>(value) + field.offset + c * program::hostBytes(field.scalar);
       inputs.push_back({std::string(parameter.name) + componentName(*parameter.element, component),
-                        hostValue(at, field.scalar), shadow::isReal(field.scalar)});
+                        numberAt(at, field.scalar), shadow::isReal(field.scalar)});
     }
   }
 }
@@ -337,6 +320,7 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
+    result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
     result.shares = after.shares;
   }
 }

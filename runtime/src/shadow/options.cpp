@@ -42,6 +42,33 @@ std::int64_t bytes(std::string_view value) {
   return number * unit;
 }
 
+/// KERNEL.PARAMETER:NUMBER, or KERNEL.PARAMETER[ELEMENT]:NUMBER.
+Setting settingOf(std::string_view value) {
+  constexpr std::string_view wanted =
+      "KERNEL.PARAMETER:NUMBER, as in heat::step.dt:0.5 or heat::step.u[7]:nan";
+  const std::size_t dot = value.find('.'), colon = value.rfind(':');
+  if (dot == std::string_view::npos || dot == 0 || colon == std::string_view::npos || colon < dot)
+    refuse("set", value, wanted);
+  Setting setting;
+  setting.kernel = value.substr(0, dot);
+  std::string_view parameter = value.substr(dot + 1, colon - dot - 1);
+  const std::size_t bracket = parameter.find('[');
+  if (bracket != std::string_view::npos) {
+    const std::string_view digits = parameter.substr(bracket + 1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), setting.element);
+    if (error != std::errc() || std::string_view(end, digits.data() + digits.size()) != "]" ||
+        setting.element < 0)
+      refuse("set", value, wanted);
+    parameter = parameter.substr(0, bracket);
+  }
+  setting.parameter = parameter;
+  const std::string_view number = value.substr(colon + 1);
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), setting.value);
+  if (error != std::errc() || end != number.data() + number.size() || parameter.empty())
+    refuse("set", value, wanted);
+  return setting;
+}
+
 void set(Options& options, std::string_view name, std::string_view value) {
   if (name == "every") {
     options.every = positive(name, value, "a number of calls from 1 on");
@@ -53,11 +80,17 @@ void set(Options& options, std::string_view name, std::string_view value) {
     options.followsDecisions = value == "follow";
   } else if (name == "memory") {
     options.memory = bytes(value);
+  } else if (name == "given") {
+    if (value != "list") refuse(name, value, "list");
+    options.listsGiven = true;
+  } else if (name == "set") {
+    options.settings.push_back(settingOf(value));
   } else if (name == "inputs") {
     if (!value.ends_with(".npz")) refuse(name, value, "a file whose name ends in .npz");
     options.inputs = value;
   } else {
-    const std::vector<std::string> known = {"every", "kernels", "decisions", "memory", "quad", "inputs"};
+    const std::vector<std::string> known = {"every", "kernels", "decisions", "memory",
+                                            "quad",  "inputs",  "given",     "set"};
     const std::string_view near = assemble::nearestWord(name, known);
     throw Error(fmt::format("SK_SHADOW: there is no option '{}'{}; choose one of {}", name,
                             near.empty() ? "" : fmt::format("; did you mean '{}'?", near),

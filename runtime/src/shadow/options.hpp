@@ -11,6 +11,14 @@
 
 namespace sk::shadow {
 
+/// A number to put in the place of those that the host gives a parameter.
+struct Setting {
+  std::string kernel;  ///< a pattern
+  std::string parameter;
+  std::int64_t element = -1;  ///< of a stream, row-major; all of them if it is negative
+  double value = 0;
+};
+
 /// SK_SHADOW=report.html,every=16,kernels=heat::*,kernels=other,decisions=follow,memory=8G,quad=heat::residual,inputs=recorded.npz
 struct Options {
   std::string report;  ///< the page; the report as JSON lies beside it
@@ -21,6 +29,9 @@ struct Options {
       0;  ///< the most bytes for the reference's streams; 0: half of the memory that is free
   std::vector<std::string> quad;  ///< kernels whose own error is measured in __float128
   std::string inputs;  ///< a .npz file for the inputs of each kernel's worst call; empty: none
+
+  bool listsGiven = false;  ///< the report lists what the host gives to kernels
+  std::vector<Setting> settings;  ///< what is put in its place
 
   /// Where the report goes as JSON: the same name with the ending .json.
   std::string json() const;

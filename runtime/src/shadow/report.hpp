@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -128,8 +129,32 @@ struct ResultRecord {
   double largest = 0, last = 0;  ///< relative errors of the reads
   double scale = 0;  ///< of a value: the largest of the reads, since a sum may be 0 by chance
   std::int64_t differs = 0;  ///< integers that differ
+  std::int64_t withoutValue =
+      0;  ///< elements of a read that are NaN or infinite, whatever the reference has; the most of all reads
   std::int64_t notFinite = 0;  ///< elements of the last read that are not finite, where the reference's are
   Shares shares;  ///< of the last read
+};
+
+/// What the host gives a parameter of a kernel: a value, or a stream that it has written.
+struct GivenRecord {
+  int kernel = 0;
+  std::string parameter, type;
+  std::string scalar;  ///< of its numbers: "float", "half", "int" ...
+  bool isStream = false;
+  std::string stream;  ///< its name, if it has one
+  double low = std::numeric_limits<double>::infinity(),
+         high = -std::numeric_limits<double>::infinity();  ///< of its numbers
+  bool hasRange = false;
+  double rangeLow = 0, rangeHigh = 0;  ///< what [[range]] declares, of all parameters that get the stream
+  std::int64_t elements = 0, times = 0;
+};
+
+/// Loops that end by one condition.
+struct LoopRecord {
+  std::string condition;
+  std::int64_t runs = 0;
+  std::int64_t unfinished = 0;  ///< runs that their limit ended, not the condition
+  std::int64_t longest = 0;  ///< iterations
 };
 
 struct Path {
@@ -172,6 +197,8 @@ struct Report {
   std::vector<ResultRecord> results;
   std::vector<ExceptionRecord> exceptions;
   std::vector<DecisionRecord> decisions;
+  std::vector<GivenRecord> given;
+  std::vector<LoopRecord> loops;
   std::vector<std::string> notes;
   std::vector<Verdict> verdicts;
 

@@ -108,10 +108,10 @@ std::string result(const Report& report, const ResultRecord& record) {
   });
   return fmt::format(
       R"({{"name":{},"kind":"{}","reads":{},"elements":{},"error":{{"largest":{},"last":{}}},"digits":{:.2f},)"
-      R"("differs":{},"notFinite":{},"shares":{}}})",
+      R"("differs":{},"notFinite":{},"withoutValue":{},"shares":{}}})",
       jsonString(record.name), record.isValue ? "value" : "read", record.reads, record.elements,
       number(record.largest), number(record.last), survivingDigits(record.largest), record.differs,
-      record.notFinite, shares);
+      record.notFinite, record.withoutValue, shares);
 }
 
 std::string_view kindOf(ExceptionRecord::Kind kind) {
@@ -137,6 +137,22 @@ std::string decision(const Report& report, const DecisionRecord& record) {
   return fmt::format(R"({{"kernel":{},"elements":{},"isInherited":{},{}}})",
                      jsonString(report.nameOf(record.kernel)), record.elements, record.isInherited,
                      element(record.first));
+}
+
+std::string given(const Report& report, const GivenRecord& record) {
+  const std::string range =
+      record.hasRange ? fmt::format("[{},{}]", number(record.rangeLow), number(record.rangeHigh)) : "null";
+  return fmt::format(
+      R"({{"kernel":{},"parameter":{},"type":{},"scalar":"{}","kind":"{}","stream":{},"low":{},"high":{},"range":{},)"
+      R"("elements":{},"times":{}}})",
+      jsonString(report.nameOf(record.kernel)), jsonString(record.parameter), jsonString(record.type),
+      record.scalar, record.isStream ? "stream" : "value", jsonString(record.stream), number(record.low),
+      number(record.high), range, record.elements, record.times);
+}
+
+std::string loop(const LoopRecord& record) {
+  return fmt::format(R"({{"condition":{},"runs":{},"unfinished":{},"longest":{}}})",
+                     jsonString(record.condition), record.runs, record.unfinished, record.longest);
 }
 
 struct Unread {
@@ -200,7 +216,7 @@ std::string toJson(const Report& report) {
       R"("options":{{"every":{},"kernels":{},"decisions":"{}","quad":{}}},)"
       R"("seconds":{{"program":{:.6f},"device":{:.6f},"reference":{:.6f},"comparison":{:.6f}}},)"
       R"("calls":{},"followed":{},"ranks":{},"verdicts":{},"kernels":{},"streams":{},"results":{},)"
-      R"("exceptions":{},"decisions":{},"account":{},"notes":{}}})",
+      R"("exceptions":{},"decisions":{},"account":{},"given":{},"loops":{},"notes":{}}})",
       jsonString(report.program), jsonString(report.device), jsonString(report.reference),
       jsonString(report.ended), options.every,
       texts(options.kernels.empty() ? std::vector<std::string>{"*"} : options.kernels),
@@ -210,7 +226,8 @@ std::string toJson(const Report& report) {
       list(report.results, [&](const ResultRecord& each) { return result(report, each); }),
       list(report.exceptions, [&](const ExceptionRecord& each) { return exception(report, each); }),
       list(report.decisions, [&](const DecisionRecord& each) { return decision(report, each); }),
-      account(report), texts(report.notes));
+      account(report), list(report.given, [&](const GivenRecord& each) { return given(report, each); }),
+      list(report.loops, loop), texts(report.notes));
 }
 
 }  // namespace sk::shadow

@@ -56,6 +56,7 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
   result.largest = std::max(result.largest, result.last);
   result.differs += errors.decisions.count;
   result.notFinite = errors.newNans.count + errors.newInfinities.count;
+  result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
   result.shares = stream.errors.shares;
   if (result.last > 0 && result.shares.all().empty()) result.shares.add(stream.last.kernel, 1);
   report->comparisonSeconds +=

@@ -13,6 +13,7 @@
 #include "device/rows_state.hpp"
 #include "shadow/call_record.hpp"
 #include "shadow/copies.hpp"
+#include "shadow/given.hpp"
 #include "shadow/recorder.hpp"
 
 namespace sk {
@@ -314,6 +315,13 @@ void CallFollower::giveBack() {
   }
 }
 
+void follow(ShadowDevice& device, const ShadowedCall& call) {
+  const shadow::Options& options = device.recorder().options();
+  if (!options.listsGiven && options.settings.empty()) return CallFollower(device, call).run();
+  const GivenArguments given(device, call);
+  CallFollower(device, given.call()).run();
+}
+
 namespace {
 
 class RecordedShadowedCall final : public RecordedCall {
@@ -326,7 +334,7 @@ class RecordedShadowedCall final : public RecordedCall {
     arguments_.noteUses(*device.recording);
   }
 
-  void run() override { CallFollower(device_, call_).run(); }
+  void run() override { follow(device_, call_); }
 
  private:
   ShadowDevice& device_;

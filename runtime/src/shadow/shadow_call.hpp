@@ -112,6 +112,9 @@ class CallFollower {
   std::vector<Written> written_;
 };
 
+/// Runs a call by a CallFollower, with other values where the options set them.
+void follow(ShadowDevice& device, const ShadowedCall& call);
+
 /// The call, to be run again by a loop. Throws sk::Error as recording it on the device does.
 std::unique_ptr<RecordedCall> recordShadowed(ShadowDevice& device, const ShadowedCall& call);
 

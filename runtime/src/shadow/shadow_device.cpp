@@ -187,7 +187,7 @@ namespace {
 
 void followOrRecord(ShadowDevice& device, const ShadowedCall& call) {
   if (device.recording != nullptr) return device.recording->add(recordShadowed(device, call));
-  CallFollower(device, call).run();
+  follow(device, call);
 }
 
 }  // namespace
@@ -211,6 +211,20 @@ void ShadowDevice::fold(const program::Reduction& reduction, std::span<const Arg
 void ShadowDevice::scan(const program::Reduction& reduction, std::span<const Argument> arguments,
                         const CallOptions& options) {
   followOrRecord(*this, {ShadowedCall::Kind::Scan, reduction.fold, &reduction, arguments, {}, options});
+}
+
+void ShadowDevice::noteLoopEnd(const StreamRegion& condition, std::int64_t iterations, bool isDone) {
+  if (!isFollowing()) return;
+  const std::string name = shadowStream(condition).describe();
+  shadow::Recorder::Access report(recorder_);
+  auto found = std::ranges::find(report->loops, name, &shadow::LoopRecord::condition);
+  if (found == report->loops.end()) {
+    report->loops.emplace_back().condition = name;
+    found = report->loops.end() - 1;
+  }
+  ++found->runs;
+  found->unfinished += isDone ? 0 : 1;
+  found->longest = std::max(found->longest, iterations);
 }
 
 void ShadowDevice::run(const ResolvedCall& call) { failForStep(call.kernel); }

@@ -126,6 +126,8 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::unique_ptr<Staging> makeStaging(Staging::Way way) override;
   bool needsDense(const StreamRegion&) override { return false; }
 
+  void noteLoopEnd(const StreamRegion& condition, std::int64_t iterations, bool isDone) override;
+
   // steps of calls, none of which comes here
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;

@@ -190,7 +190,7 @@ void ShadowStream::change(const StreamRegion& region, Change&& change) {
   }
   mirrorMarks();
   refreshExposure();
-  last = {.elements = region.shape.size()};
+  last = {.elements = region.shape.size(), .isByHost = true};
   if (held == nullptr) return;
   change(on(region, *held));
   isStale_ = false;
@@ -253,7 +253,10 @@ bool ShadowStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   mirrorMarks();
   source.noteRead(from);
   refreshExposure();
-  last = {.kernel = source.last.kernel, .output = source.last.output, .elements = to.shape.size()};
+  last = {.kernel = source.last.kernel,
+          .output = source.last.output,
+          .elements = to.shape.size(),
+          .isByHost = source.last.isByHost};
   if (written == nullptr) {
     goStale(false);
     return true;

@@ -30,6 +30,8 @@ struct LastWrite {
   std::string output = {};
   double seconds = 0;
   std::int64_t elements = 0;
+  bool isByHost = false;  ///< the host has written elements, itself or by copying such a stream
+  int given = -1;  ///< number of the record of what the host has given (shadow/given.hpp)
   bool isRead = false, isReadWhole = false;
   Index readBegin = {}, readEnd = {};  ///< a box around what was read
 };

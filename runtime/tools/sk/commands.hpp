@@ -26,6 +26,8 @@ void addServe(CLI::App& app);
 
 /// `sk shadow`: prints the report of a program that ran beside its reference (SK_SHADOW), and writes its page again.
 void addShadow(CLI::App& app);
+/// `sk stress`: runs a program with what its kernels are given at the ends, and says where it breaks.
+void addStress(CLI::App& app);
 /// `sk tune`: finds the cheapest configuration file with which the results of a program are as exact as asked.
 void addTune(CLI::App& app);
 

@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   sk_tool::addScale(app);
   sk_tool::addServe(app);
   sk_tool::addShadow(app);
+  sk_tool::addStress(app);
   sk_tool::addTune(app);
   try {
     app.parse(argc, argv);

@@ -24,6 +24,11 @@ function fill(element, attributes, children) {
   return element;
 }
 
+/** A list with a button that shows `step` more, or with nothing if nothing is left. */
+function moreButton(left, step, of, show) {
+  return left > 0 ? [make("button", { type: "button", onclick: show }, `Show ${countText(Math.min(left, step))} more of ${of}`)] : [];
+}
+
 const narrowSpace = "\u202f";
 const missing = "\u2013";
 

@@ -136,21 +136,10 @@ function picturesSection() {
     keys.replaceChildren(...(state.kind.noun === "stream" ? [] : [legend()]));
     const left = found.length - state.shown;
     foot.replaceChildren(
-      ...(left > 0
-        ? [
-            make(
-              "button",
-              {
-                type: "button",
-                onclick: () => {
-                  state.shown += 24;
-                  draw();
-                },
-              },
-              `Show ${Math.min(24, left)} more of ${counted(found.length, state.kind.noun)}`,
-            ),
-          ]
-        : []),
+      ...moreButton(left, 24, counted(found.length, state.kind.noun), () => {
+        state.shown += 24;
+        draw();
+      }),
       found.length ? "" : `No ${state.kind.noun} contains \u201c${state.filter}\u201d.`,
     );
   };

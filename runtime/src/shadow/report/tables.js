@@ -104,23 +104,12 @@ function table(columns, items, options) {
   const draw = () => {
     const all = chosen();
     body.replaceChildren(...all.slice(0, state.shown).flatMap(rowOf));
-    const left = all.length - state.shown;
+    const left = all.length - state.shown, step = Math.max(200, state.shown);
     foot.replaceChildren(
-      ...(left > 0
-        ? [
-            make(
-              "button",
-              {
-                type: "button",
-                onclick: () => {
-                  state.shown += Math.max(200, state.shown);
-                  draw();
-                },
-              },
-              `Show ${countText(Math.min(left, Math.max(200, state.shown)))} more of ${counted(all.length, options.noun ?? "row")}`,
-            ),
-          ]
-        : []),
+      ...moreButton(left, step, counted(all.length, options.noun ?? "row"), () => {
+        state.shown += step;
+        draw();
+      }),
       ...(all.length || !state.filter ? [] : [`No ${options.noun ?? "row"} contains \u201c${state.filter}\u201d.`]),
     );
     [...head.children].forEach((cell, i) =>

@@ -5,11 +5,10 @@
 
 #include <chrono>
 #include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "application/process.hpp"
 #include "results/results_file.hpp"
 
 namespace sk_tool::tune {
@@ -32,7 +31,7 @@ sk::results::Series seriesOf(const ResultFile& file);
 std::vector<double> pictureIn(const std::string& file);
 
 struct RunOptions {
-  std::map<std::string, std::optional<std::string>> environment = {};  ///< variables to set, or to unset
+  EnvironmentChanges environment = {};
   bool measures = false;  ///< wait around each kernel on devices that queue calls
   std::chrono::duration<double> limit = std::chrono::hours(24);
 };

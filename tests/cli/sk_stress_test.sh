@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# `sk stress`: finds where programs break at the ends of what they are given, and nothing where they hold.
+# Usage: sk_stress_test.sh SK PROGRAM (tests/cli/stress/program.cpp)
+set -euo pipefail
+sk=$(realpath "$1")
+program=$(realpath "$2")
+tested=("$sk" stress)
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
+unset SK_PROFILE SK_CONFIG SK_RESULTS SK_CHECK SK_SHADOW
+export SK_DEVICE=native SK_CACHE=$place/cache OMP_NUM_THREADS=1
+
+# json EXPRESSION: what Python makes of all.json; `kinds` has the kinds of findings by the text of the case.
+json() { python3 -c "
+import json
+all = json.load(open('all.json'))
+kinds = {r['text']: [f['kind'] for f in r['findings']] for r in all['runs']}
+texts = {r['text']: ' '.join(f['text'] for f in r['findings']) for r in all['runs']}
+broken = {r['text'] for r in all['runs'] if r['breaks']}
+$1" || broken "the JSON is not as expected: $1"; }
+
+run 0 --help
+for option in --only --sizes --limit --json --keep --all --any-status; do prints "$option"; done
+
+# An unstable step within its range is named with its factor; the same step with the right range holds.
+run 1 --json all.json -- "$program" step 100
+says 'the program breaks in 1 of '
+prints 'stressed::step.k = 1, the upper end of its range'
+matches 'unstable time step: the error grows by a factor of (2\.[89]|3)[0-9.]* with each call of stressed::step'  # 3 for the shortest wave
+json "
+assert all['format'] == 'streamkernel-stress' and all['version'] == 1 and all['broken'] == 1, all
+assert broken == {'stressed::step.k = 1, the upper end of its range'}, broken
+assert 'unstable' in kinds['stressed::step.k = 1, the upper end of its range'], kinds
+assert kinds['stressed::step.x = 0 everywhere'] == [], kinds
+assert kinds['stressed::step.x[50] = nan'] == ['spread'], kinds"
+run 0 --all --json all.json -- "$program" stable 100
+prints 'stressed::stableStep.k = 0.5, the upper end of its range'
+json "assert not broken and all['broken'] == 0 and any('stableStep.x' in text for text in kinds), kinds"
+
+# Division by the end of a range, with where the infinity comes from.
+run 1 --json all.json -- "$program" divide 20
+prints 'stressed::reciprocal.x = 0 everywhere, the lower end of its range'
+prints "20 of 20 elements of 'v' are NaN or infinite; the first infinity comes from stressed::reciprocal, call 1"
+json "
+assert broken == {'stressed::reciprocal.x = 0 everywhere, the lower end of its range'}, broken
+assert not any('nan' in text for text in kinds), kinds"
+
+# Without ranges, nothing breaks; but what changes is said. Values that kernels share change together.
+run 0 --all --json all.json -- "$program" plain 20
+prints 'changes where no range is declared'
+json "
+assert 'notFinite' in kinds['factor of stressed::scale and stressed::offset = 3.40282347e+38, huge'], kinds
+assert kinds['stressed::scale.shift = 1'] == [] and not broken, kinds"
+run 0 --only 'stressed::scale.shift' --json all.json -- "$program" plain 20
+json "assert len(kinds) == 3 and all['runs'][2]['settings'] == ['stressed::scale.shift:1'], all['runs']"
+run 0 --only 'stressed::nothing' -- "$program" plain 20
+prints 'note: --only stressed::nothing matches nothing'
+
+# Loops that do not converge, those of the device and those of the program.
+run 1 --only 'stressed::approach.keep' --json all.json -- "$program" loop 20
+json "
+assert broken == {'stressed::approach.keep = 1, the upper end of its range'}, broken
+assert 'stops at its limit: 500 iterations, ' in texts['stressed::approach.keep = 1, the upper end of its range'], texts"
+run 1 --only 'stressed::approach.keep' --json all.json -- "$program" host 20
+json "
+assert broken == {'stressed::approach.keep = 1, the upper end of its range'}, broken
+assert 'calls stressed::approach 500 times' in texts['stressed::approach.keep = 1, the upper end of its range'], texts"
+
+# Sizes: a crash breaks the program, a refusal does not.
+run 1 --only none --sizes 1,2,17 --json all.json -- "$program" crash '{20}'
+json "assert broken == {'size 1'} and kinds['size 1'] == ['crash'] and kinds['size 17'] == [], kinds"
+run 0 --only none --sizes 1,2 --json all.json -- "$program" refuse '{20}'
+json "assert kinds['size 1'] == ['status'] and 'the size 1 is odd' in texts['size 1'] and kinds['size 2'] == [], texts"
+run 0 --only none -- "$program" plain 20
+prints 'put one in braces, --size={256}'
+
+# A limit ends a run, and the pages of all runs can be kept.
+run 0 --only 'stressed::scale.shift' --keep pages -- "$program" plain 20
+[[ -s pages/000.html && -s pages/002.json ]] || broken 'the pages are not kept'
+# The files of the program are in the end those of the program as it is.
+"$program" file results.txt
+cp results.txt before.txt
+run 0 --only 'stressed::scale.*' -- "$program" file results.txt
+cmp -s results.txt before.txt || broken 'the results are those of an extreme'
+
+# What cannot be stressed is refused.
+refuses() {
+  run 1 "${@:2}"
+  says "$1"
+}
+refuses "as it is, '$program' ends with status 3" -- "$program" status
+run 0 --any-status --only 'stressed::scale.shift' -- "$program" status
+refuses 'reads no result from its streams' -- "$program" silent
+refuses 'calls no kernel' -- "$program" nothing
+refuses 'opens no device of StreamKernel' -- true
+refuses "there is no program './missing'" -- ./missing
+refuses '--sizes' --sizes 0 -- "$program" plain
+refuses "cannot write '/nowhere/all.json'" --only none --json /nowhere/all.json -- "$program" plain
+refuses 'program is required'
+# A setting that is not valid leaves the program as it is.
+SK_SHADOW=report.json,set=scale:1 "$program" plain 2>messages || broken 'an invalid setting ends the program'
+grep -q "set is 'scale:1'; give KERNEL.PARAMETER:NUMBER" messages || broken 'an invalid setting is not named'
+echo ok
