@@ -291,6 +291,17 @@ void runChanges() {
   advanceTwice();
 }
 
+/// One element is inexact, far inside of a long stream, which several threads compare.
+void runWorst() {
+  sk::Device device;
+  auto x = device.stream<float>({600, 1000}), r = device.stream<float>({600, 1000});
+  std::vector<float> numbers(x.size(), 1.5F);
+  numbers[456789] = 1.1F;
+  x.write(numbers);
+  faults::square(x, r);
+  r.read();
+}
+
 /// The most memory that this process has had, in bytes.
 std::int64_t peakMemory() {
   std::ifstream in("/proc/self/status");
@@ -408,7 +419,7 @@ const std::map<std::string, std::function<void()>> programs = {
     {"replay", runReplay},     {"fine", runFine},         {"exit", runExit},
     {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
     {"nothing", runNothing},   {"devices", runDevices},   {"changes", runChanges},
-    {"memory", runMemory},     {"precise", runPrecise}};
+    {"memory", runMemory},     {"precise", runPrecise},   {"worst", runWorst}};
 
 }  // namespace
 

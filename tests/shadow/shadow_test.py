@@ -101,6 +101,14 @@ for name in ("replay", "changes"):
     for call, (a, b) in enumerate(zip(found, expected)):
         check(math.isclose(a, b, rel_tol=1e-6), f"{name}: the own error of call {call} is {a}, not {b}")
 
+# The worst element of a call, and what it should be.
+for threads in ("1", "4"):
+    done, report = run("worst", OMP_NUM_THREADS=threads)
+    worst = next(k for k in report["kernels"] if k["name"] == "faults::square")["worst"]
+    square = (1.1 + 2.384185791015625e-08) ** 2  # of the float that is nearest to 1.1
+    check(worst["element"] == [456, 789] and math.isclose(float.fromhex(worst["reference"]["hex"]), square, rel_tol=1e-15),
+          f"worst with {threads} threads: {worst}")
+
 # Doubles that are wrong in the same way on the reference: only quadruple precision shows it.
 if device == "native":
     done, report = run("precise")

@@ -230,18 +230,17 @@ void CallFollower::compareOutput(Written& written) {
     if (reference->shape.size() != written.stream->shape.size()) {  // another number of elements was pushed
       OutputErrors errors;
       errors.integers = 1;
-      errors.decisions.add(0, 0);
+      errors.decisions.add(0, 0, 0);
       const NativeStream* const own = ownOf(written);
-      if (own != nullptr && own->shape.size() != written.stream->shape.size()) errors.ownDecisions.add(0, 0);
+      if (own != nullptr && own->shape.size() != written.stream->shape.size())
+        errors.ownDecisions.add(0, 0, 0);
       recordErrors(written, errors, hasOwn_);
       written.stream->goStale(true);
       return;
     }
     if (region.shape.size() == 0) return;
-    written.device = temporaries.take(*written.stream->element, region.shape);
     const StreamRegion inner = written.stream->innerOf(region);
     source = isAllInOrder(inner) ? dynamic_cast<const NativeStream*>(inner.stream) : nullptr;
-    if (source == nullptr) copyElements(inner, detail::wholeRegion(written.device.get()));
     StreamRegion there = region;
     there.stream = reference;
     if (!isAllInOrder(there)) {
@@ -252,14 +251,22 @@ void CallFollower::compareOutput(Written& written) {
   }
   reference_ = reference;
   const NativeStream* const own = ownOf(written);
-  const bool hasOwn = own != nullptr && own->shape.size() == written.device->shape.size();
+  const Shape& shape = written.stream != nullptr ? regionOf(written).shape : written.device->shape;
+  const bool hasOwn = own != nullptr && own->shape.size() == shape.size();
+  const bool isHalf = written.stream != nullptr && written.stream->storage == Storage::Half;
+  const double stored = hasOwn && isHalf ? shadow::squaresOfHalfRounding(*own) : 0;
+  if (hasOwn && source != nullptr && own == written.own.get() && own->device == &device_.reference()) {
+    written.device = std::move(written.own);  // the device's results replace it
+  } else if (written.device == nullptr) {
+    written.device = temporaries.take(*written.stream->element, shape);
+    if (source == nullptr)
+      copyElements(written.stream->innerOf(regionOf(written)), detail::wholeRegion(written.device.get()));
+  }
   const OutputErrors errors = shadow::compare(*written.device, source, hasOwn ? own : nullptr, *reference);
   written.isSame = errors.isSame;
-  if (hasOwn && written.stream != nullptr && written.stream->storage == Storage::Half &&
-      errors.reference2 > 0) {
-    const double stored = std::sqrt(shadow::squaresOfHalfRounding(*own) / errors.reference2);
+  if (hasOwn && isHalf && errors.reference2 > 0) {
     Recorder::Access report(device_.recorder());
-    recordOf(*report, kernel_).storage.add(stored);
+    recordOf(*report, kernel_).storage.add(std::sqrt(stored / errors.reference2));
   }
   recordErrors(written, errors, hasOwn);
   if (device_.recorder().options().followsDecisions && written.stream != nullptr &&
@@ -288,7 +295,7 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
     if (errors.own.element >= 0 && worst > record.worstError) {
       record.worstError = worst;
-      record.worst = elementOf(written, errors.own.element, errors.own.component);
+      record.worst = elementOf(written, errors.own.element, errors.own.component, errors.own.own);
       isWorst_ = true;
     }
   } else {
@@ -386,15 +393,17 @@ StreamErrors CallFollower::errorsAfter(const Written& written, const OutputError
   return after;
 }
 
-ElementRecord CallFollower::elementOf(const Written& written, std::int64_t element, int component) const {
+/// `value` is what the reference computes there with the device's inputs.
+ElementRecord CallFollower::elementOf(const Written& written, std::int64_t element, int component,
+                                      double value) const {
   const program::Parameter& parameter = parameterOf(written);
   const program::Element& type = written.stream != nullptr ? *written.stream->element : *parameter.element;
-  const NativeStream* const own = ownOf(written);
   ElementRecord record;
   record.call = number_;
   record.output = std::string(parameter.name) + componentName(type, component);
   record.isReal = shadow::isReal(scalarOf(type, component));
   if (written.device == nullptr) {  // another number of elements was pushed
+    const NativeStream* const own = ownOf(written);
     const bool isOwn = own != nullptr && own->shape.size() != written.stream->shape.size();
     record.output += " (number of elements)";
     record.isReal = false;
@@ -404,8 +413,7 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
   }
   const Shape& shape = written.device->shape;
   record.device = shadow::valueAt(*written.device, component, element);
-  record.reference =
-      own != nullptr && own->shape.size() == shape.size() ? shadow::valueAt(*own, component, element) : NAN;
+  record.reference = value;
   if (written.stream == nullptr) return record;
   record.index = indexIn(shape, element);
   const StreamRegion region = regionOf(written);
@@ -463,8 +471,12 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
       return each.kernel == kernel && each.kind == kind && each.isInReference == (added.count == 0);
     });
     if (isKnown || report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
-    report.exceptions.push_back(
-        {kind, kernel, shown.count, added.count == 0, elementOf(written, shown.first, shown.component), {}});
+    report.exceptions.push_back({kind,
+                                 kernel,
+                                 shown.count,
+                                 added.count == 0,
+                                 elementOf(written, shown.first, shown.component, shown.own),
+                                 {}});
     // infinity minus infinity is NaN: it comes from where the infinity does
     if (added.count > 0 || exception_ < 0) keep(static_cast<int>(report.exceptions.size() - 1));
   };
@@ -496,26 +508,27 @@ void CallFollower::recordDecisions(const Written& written, const OutputErrors& e
                                    Report& report) {
   constexpr std::size_t most = 256;
   KernelRecord& record = recordOf(report, kernel);
-  const auto add = [&](std::int64_t elements, std::int64_t first, int component, bool isInherited) {
+  const auto add = [&](std::int64_t elements, std::int64_t first, int component, double own,
+                       bool isInherited) {
     record.decisions += elements;
     const bool isKnown = std::ranges::any_of(report.decisions, [&](const shadow::DecisionRecord& each) {
       return each.kernel == kernel && each.isInherited == isInherited;
     });
     if (isKnown || report.decisions.size() >= most) return;
-    report.decisions.push_back({kernel, elements, isInherited, elementOf(written, first, component)});
+    report.decisions.push_back({kernel, elements, isInherited, elementOf(written, first, component, own)});
     if (isInherited &&
         reference_ != nullptr)  // with the same inputs, the reference decides as the device does
       report.decisions.back().first.reference = shadow::valueAt(*reference_, component, first);
   };
   if (errors.ownDecisions.count > 0) {
-    add(errors.ownDecisions.count, errors.ownDecisions.first, errors.ownDecisions.component, false);
+    add(errors.ownDecisions.count, errors.ownDecisions.first, errors.ownDecisions.component,
+        errors.ownDecisions.own, false);
   } else if (errors.decisions.count > 0) {
-    add(errors.decisions.count, errors.decisions.first, errors.decisions.component, true);
+    add(errors.decisions.count, errors.decisions.first, errors.decisions.component, errors.decisions.own,
+        true);
   }
-  const NativeStream* const own = ownOf(written);
-  if (errors.own.element < 0 || own == nullptr) return;
-  if (isJump(errors, shadow::valueAt(*own, errors.own.component, errors.own.element)))
-    add(1, errors.own.element, errors.own.component, false);
+  if (errors.own.element >= 0 && isJump(errors, errors.own.own))
+    add(1, errors.own.element, errors.own.component, errors.own.own, false);
 }
 
 }  // namespace sk

@@ -192,7 +192,15 @@ struct WorstBlock {
   double error = 0;
   std::int64_t first = 0, count = 0;
   int component = 0;
+  Block own{};  ///< what the reference computes there with the device's inputs
 
+  void take(const Triple& block, double largest) {
+    error = largest;
+    first = block.first;
+    count = block.count;
+    component = block.component;
+    std::copy_n(block.o, block.count, own.begin());
+  }
   void add(const WorstBlock& other) {
     const bool isEarlier =
         other.component < component || (other.component == component && other.first < first);
@@ -214,11 +222,11 @@ struct Compared {
 void addCarefully(const Triple& block, std::int64_t i, OutputErrors& errors, double& worst) {
   const double d = block.d[i], o = block.o[i], r = block.r[i];
   const std::int64_t element = block.first + i;
-  if (std::isnan(d)) errors.nans.add(element, block.component);
-  if (std::isinf(d)) errors.infinities.add(element, block.component);
-  if (std::isfinite(o) && std::isnan(d)) errors.newNans.add(element, block.component);
+  if (std::isnan(d)) errors.nans.add(element, block.component, o);
+  if (std::isinf(d)) errors.infinities.add(element, block.component, o);
+  if (std::isfinite(o) && std::isnan(d)) errors.newNans.add(element, block.component, o);
+  if (std::isfinite(o) && std::isinf(d)) errors.newInfinities.add(element, block.component, o);
   if (std::isfinite(r) && !std::isfinite(d)) ++errors.lost;
-  if (std::isfinite(o) && std::isinf(d)) errors.newInfinities.add(element, block.component);
   if (!std::isfinite(d) || !std::isfinite(o) || !std::isfinite(r)) return;
   const double own = d - o, total = d - r, inherited = o - r;
   ++errors.reals;
@@ -249,11 +257,11 @@ void addReals(const Triple& block, Compared& all) {
         errors.isSame && sums.total2 == 0 &&
         std::memcmp(block.d, block.r, static_cast<std::size_t>(block.count) * sizeof(double)) == 0;
   }
-  if (worst > all.worst.error) all.worst = {worst, block.first, block.count, block.component};
+  if (worst > all.worst.error) all.worst.take(block, worst);
   if (sums.isFinite() && !sums.mayFlush) return;
   for (std::int64_t i = 0; i < block.count; ++i) {
     if (block.d[i] == 0 && block.o[i] != 0 && std::fabs(block.o[i]) < leastNormal)
-      errors.flushed.add(block.first + i, block.component);
+      errors.flushed.add(block.first + i, block.component, block.o[i]);
   }
 }
 
@@ -300,8 +308,9 @@ void addIntegers(const Column& d, const Column& o, const Column& r, const Triple
   if (!isOwn && !isTotal) return;
   for (std::int64_t i = block.first; i < block.first + block.count; ++i) {
     const double reference = r.at(i), device = d.at(i), total = device - reference;
-    if (differ(device, o.at(i))) errors.ownDecisions.add(i, block.component);
-    if (differ(device, reference)) errors.decisions.add(i, block.component);
+    const double own = o.at(i);
+    if (differ(device, own)) errors.ownDecisions.add(i, block.component, own);
+    if (differ(device, reference)) errors.decisions.add(i, block.component, own);
     errors.integerTotal2 += total * total;
   }
 }
@@ -323,35 +332,37 @@ void fetch(const Column& from, const Column& to, std::int64_t first, std::int64_
 struct ComparedColumns {
   Column d, o, r;
   std::optional<Column> source;
+  bool isReplaced;  ///< d is the source, whose elements replace those of o
   int component;
 };
 
 void addRange(const ComparedColumns& columns, native::Range range, Compared& all) {
-  const auto& [d, o, r, source, component] = columns;
+  const auto& [d, o, r, source, isReplaced, component] = columns;
   Block roomD, roomO, roomR;
   for (std::int64_t first = range.begin; first < range.end; first += blockSize) {
     Triple block{nullptr, nullptr, nullptr, first, std::min(blockSize, range.end - first), component};
-    if (source) fetch(*source, d, first, block.count);
-    if (!isReal(d.scalar)) {
+    if (source && !isReplaced) fetch(*source, d, first, block.count);
+    if (isReal(d.scalar)) {
+      block.d = doublesOf(d, first, block.count, roomD);
+      block.o = o.array == r.array ? nullptr : doublesOf(o, first, block.count, roomO);
+      block.r = doublesOf(r, first, block.count, roomR);
+      if (block.o == nullptr) block.o = block.r;
+      addReals(block, all);
+    } else {
       addIntegers(d, o, r, block, all.errors);
-      continue;
     }
-    block.d = doublesOf(d, first, block.count, roomD);
-    block.o = o.array == r.array ? nullptr : doublesOf(o, first, block.count, roomO);
-    block.r = doublesOf(r, first, block.count, roomR);
-    if (block.o == nullptr) block.o = block.r;
-    addReals(block, all);
+    if (isReplaced) fetch(*source, o, first, block.count);
   }
 }
 
 /// The first element of a block with its largest own error.
-Worst elementOf(const WorstBlock& worst, const Column& d, const Column& o) {
-  Block roomD, roomO;
-  const double* const device = doublesOf(d, worst.first, worst.count, roomD);
-  const double* const own = doublesOf(o, worst.first, worst.count, roomO);
-  std::int64_t i = 0;
-  while (i < worst.count - 1 && std::fabs(device[i] - own[i]) != worst.error) ++i;
-  return {worst.error, worst.first + i, worst.component};
+Worst elementOf(const WorstBlock& worst, const Column& d) {
+  Block room;
+  const double* const device = doublesOf(d, worst.first, worst.count, room);
+  std::size_t i = 0;
+  while (static_cast<std::int64_t>(i) < worst.count - 1 && std::fabs(device[i] - worst.own[i]) != worst.error)
+    ++i;
+  return {worst.error, worst.first + static_cast<std::int64_t>(i), worst.component, worst.own[i]};
 }
 
 }  // namespace
@@ -359,10 +370,17 @@ Worst elementOf(const WorstBlock& worst, const Column& d, const Column& o) {
 OutputErrors compare(NativeStream& device, const NativeStream* source, const NativeStream* own,
                      const NativeStream& reference) {
   const NativeStream& given = own != nullptr ? *own : reference;
+  const bool isReplaced = own == &device && source != nullptr;
   std::vector<ComparedColumns> columns;
   for (std::size_t c = 0; c < device.components.types().size(); ++c) {
-    columns.push_back({{device, c}, {given, c}, {reference, c}, {}, static_cast<int>(c)});
-    if (source != nullptr) columns.back().source.emplace(*source, c);
+    std::optional<Column> from;
+    if (source != nullptr) from.emplace(*source, c);
+    columns.push_back({isReplaced ? *from : Column(device, c),
+                       {given, c},
+                       {reference, c},
+                       from,
+                       isReplaced,
+                       static_cast<int>(c)});
   }
   Compared all;
   std::mutex mutex;
@@ -375,8 +393,7 @@ OutputErrors compare(NativeStream& device, const NativeStream* source, const Nat
                      });
   if (source != nullptr) device.setWritten();
   if (all.worst.error > 0) {
-    const ComparedColumns& worst = columns[static_cast<std::size_t>(all.worst.component)];
-    all.errors.own = elementOf(all.worst, worst.d, worst.o);
+    all.errors.own = elementOf(all.worst, columns[static_cast<std::size_t>(all.worst.component)].d);
   }
   return all.errors;
 }

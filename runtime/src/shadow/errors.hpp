@@ -17,20 +17,19 @@ struct Found {
   std::int64_t count = 0;
   std::int64_t first = -1;  ///< row-major number of the element
   int component = 0;  ///< of the first one
+  double own = 0;  ///< what the reference computes there with the device's inputs
 
-  void add(std::int64_t element, int at) {
-    if (count++ == 0 || element < first) {
-      first = element;
-      component = at;
-    }
+  void add(std::int64_t element, int at, double value) {
+    if (count++ != 0 && element >= first) return;
+    first = element;
+    component = at;
+    own = value;
   }
   void add(const Found& other) {
     if (other.count == 0) return;
-    if (count == 0 || other.first < first) {
-      first = other.first;
-      component = other.component;
-    }
-    count += other.count;
+    const std::int64_t all = count + other.count;
+    if (count == 0 || other.first < first) *this = other;
+    count = all;
   }
 };
 
@@ -39,6 +38,7 @@ struct Worst {
   double error = 0;
   std::int64_t element = -1;
   int component = 0;
+  double own = 0;  ///< what the reference computes there with the device's inputs
 };
 
 /// Sums over the components of real numbers that are finite in all three arrays, and counts of others.
@@ -82,7 +82,8 @@ struct OutputErrors {
 };
 
 /// Compares dense streams of one shape on native devices. With `source`, first converts the elements of that one to `device`, which
-/// has at least its precision. Without `own`, the own error counts as the total one.
+/// has at least its precision. Without `own`, the own error counts as the total one. `own` may be `device`: the elements of the
+/// source then replace its own, after they have been compared with them.
 OutputErrors compare(NativeStream& device, const NativeStream* source, const NativeStream* own,
                      const NativeStream& reference);
 

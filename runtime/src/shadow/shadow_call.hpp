@@ -77,10 +77,11 @@ class CallFollower {
   void keepElements();
   void keepInputs();
   void compareOutput(Written& written);
-  /// What the reference computes with the device's inputs; null if that is not known.
+  /// What the reference computes with the device's inputs; null if that is not known, or if the device's results have replaced it.
   const NativeStream* ownOf(const Written& written) const;
   void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
-  shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component) const;
+  shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component,
+                                  double own) const;
   void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel,
                         shadow::Report& report);
   void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel,
