@@ -8,11 +8,13 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "assemble/assemble.hpp"
 #include "bounds/bounds.hpp"
@@ -118,6 +120,23 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
   messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted,
                           known.empty() ? "none" : known);
   return false;
+}
+
+/// Whether each range of --range is one of a parameter.
+bool checkRanges(const ir::Module& module, const std::vector<bounds::NamedRange>& ranges,
+                 std::ostream& messages) {
+  const auto parameterOf = [](const std::string& name) { return name.substr(0, name.find_first_of(".[")); };
+  std::set<std::string> known;
+  for (const ir::Kernel& kernel : module.kernels) {
+    for (const ir::KernelParam& param : kernel.params) known.insert(parameterOf(param.name));
+  }
+  for (const bounds::NamedRange& range : ranges) {
+    if (known.contains(parameterOf(range.name))) continue;
+    messages << fmt::format("skc: --range: '{}' has no parameter '{}'; it has {}\n", module.file, range.name,
+                            known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+    return false;
+  }
+  return true;
 }
 
 bool writeFile(const fs::path& path, const std::string& text, std::ostream& messages) {
@@ -258,6 +277,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   std::optional<ir::Module> module =
       frontend.compile(job.file, job.text == nullptr ? std::nullopt : std::optional(*job.text));
   if (!module || options.emit == Emit::Ast) return module;
+  if (!checkRanges(*module, options.bounds.ranges, job.messages)) return std::nullopt;
   if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
   checkLimits(*module, frontend.diagnostics());
   checkSizes(*module, frontend.diagnostics());

@@ -138,6 +138,10 @@ TEST_CASE("mistakes come back as messages, with the name that was given") {
   const Outcome unknown = compileText(options, "x.sk", program);
   CHECK(unknown.status == 1);
   CHECK(contains(unknown.messages, "'x.sk' has no kernel 'thrice'; it has twice"));
+  Options ranges;
+  ranges.emit = Emit::Bounds;
+  ranges.bounds.ranges.push_back(bounds::parseRange("y.z=0:1"));
+  CHECK(contains(compileText(ranges, "x.sk", program).messages, "'x.sk' has no parameter 'y.z'; it has "));
 }
 
 TEST_CASE("names that C++ or JavaScript cannot have are reported") {

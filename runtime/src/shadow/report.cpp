@@ -174,7 +174,7 @@ Growth longGrowth(const std::vector<Series::Point>& points) {
   return growthOver(std::span(points).subspan((points.size() - 1) / quarters));
 }
 
-/// Few points, since nothing is right after them: each has a larger error than the one before, by far, and the solution has not.
+/// Few points, since nothing is right after them: each has a larger error than the one before, by far, and other signs.
 Growth shortGrowth(const std::vector<Series::Point>& points) {
   constexpr double much = 100, far = 1.4;
   const std::size_t first = points.size() / 4;
@@ -182,8 +182,8 @@ Growth shortGrowth(const std::vector<Series::Point>& points) {
     if (points[i].absolute < far * points[i - 1].absolute) return {};
   }
   if (points.back().absolute < much * points[first].absolute) return {};
-  const Growth growth = growthOver(std::span(points).subspan(first));
-  return growth.isOfSolution ? Growth{} : growth;
+  const auto last = std::span(points).subspan(first);
+  return overshoots(last) ? growthOver(last) : Growth{};
 }
 
 Growth growthOf(const Series& series) {
