@@ -266,13 +266,25 @@ void Recorder::addTime(std::string_view kernel, Time begin, Time end, bool isMea
   add([&] {
     const auto found = kernels_.find(kernel);
     if (found == kernels_.end()) return;
-    ++found->second.kernel.calls;
-    if (isMeasured) found->second.kernel.seconds += static_cast<double>(end - begin) * 1e-9;
+    Called& call = found->second;
+    ++call.kernel.calls;
+    if (!isMeasured) return;
+    const double seconds = static_cast<double>(end - begin) * 1e-9;
+    if (call.kernel.calls == 1) call.firstSeconds = seconds;
+    call.kernel.seconds += seconds;
   });
 }
 
 void Recorder::addNote(std::string_view note) noexcept {
   add([&] { addNew(process_.notes, {std::string(note)}); });
+}
+
+Kernel Recorder::measured(const Called& call) const {
+  Kernel kernel = call.kernel;
+  if (!measures_ || kernel.calls < 2) return kernel;
+  const auto calls = static_cast<double>(kernel.calls);
+  kernel.seconds = (kernel.seconds - call.firstSeconds) * calls / (calls - 1);
+  return kernel;
 }
 
 void Recorder::write() noexcept {
@@ -283,7 +295,7 @@ void Recorder::write() noexcept {
     all.span = static_cast<double>(end_ - begin_) * 1e-9;
     all.hasTimes = measures_ || !isUnmeasured_;
     all.linkedKernels = program::LinkedFile::namesOfAll().kernels;
-    for (const std::string& name : kernelOrder_) all.kernels.push_back(kernels_.find(name)->second.kernel);
+    for (const std::string& name : kernelOrder_) all.kernels.push_back(measured(kernels_.find(name)->second));
     for (const auto& [name, stream] : streams_) all.streams.push_back(stream);
     for (const std::string& name : order_) {
       const Recorded& recorded = series_.find(name)->second;

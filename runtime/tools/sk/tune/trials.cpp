@@ -123,7 +123,8 @@ void Trials::runOnce(Trial& trial) {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "trial.toml").string();
   std::ofstream(file) << fileOf(trial.setting);
-  const RunResult result = application_.run({.environment = {{"SK_CONFIG", file}}, .limit = options_.limit});
+  const RunResult result = application_.run(
+      {.environment = {{"SK_CONFIG", file}}, .measures = options_.measures, .limit = options_.limit});
   ++runs_;
   if (!result.isTooSlow) longest_ = std::max(longest_, result.wall);
   if (!result.failure.empty()) {

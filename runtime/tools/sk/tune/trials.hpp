@@ -48,6 +48,7 @@ class Trials {
     std::chrono::duration<double> budget{300};
     std::chrono::duration<double> limit{3600};  ///< of one run
     bool allowsDecisions = false;
+    bool measures = false;  ///< wait around each kernel, because the devices queue calls
     std::string stateFile = {};  ///< empty: nothing is kept
     std::string key = {};  ///< what all trials depend on
   };

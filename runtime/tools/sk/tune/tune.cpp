@@ -244,6 +244,7 @@ void tune(const Options& options) {
                 {.budget = std::chrono::duration<double>(budget),
                  .limit = std::chrono::duration<double>(10 + 10 * base.wall),
                  .allowsDecisions = options.allowsDecisions,
+                 .measures = base.queues(),
                  .stateFile = options.output + ".state",
                  .key = keyOf(options, judge, file, base.process)});
   if (options.continues) trials.load();
