@@ -3,8 +3,8 @@
 """Tunes five programs on one device: tune_programs.py BIN OUT --device gpu [--scale 4] [--budget 60s] [--programs heat,cloth].
 
 BIN has sk, lattice, solve and cloth. For each program, sk tune searches from the program as it is, and from everything in doubles
-(double.toml), and verifies what it finds on other inputs. Then the program runs with the file and without it in turns; the times are those
-that the program prints of itself. OUT gets the files, the reports, the charts if gnuplot is there, and results.json; table.txt has the rows
+(double.toml), and verifies what it finds on other inputs. Then the program runs with the file and without it in turns, for --longer times as
+many steps; the times are those that the program prints of itself. OUT gets the files, the reports, the charts if gnuplot is there, and results.json; table.txt has the rows
 of docs/accuracy.md.
 """
 import argparse
@@ -23,31 +23,30 @@ HERE = pathlib.Path(__file__).resolve().parent
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0}
 
 
-def lattice(size, steps, unseen_size=None):
-    """The commands of a lattice on the scene of its name, and on the unseen one."""
-    extents = lambda scale, of: f"{of[0] * scale}x{of[1] * scale}"
+def lattice(width, height, steps):
+    """The commands of a lattice: on the scene of its name, on the unseen one, and on the first for longer."""
 
-    def command(name, scale):
-        rest = ["--steps", str(steps), "--no-account"]
-        return [
-            ["lattice", str(HERE / f"{name}{ending}.toml"), "--size", extents(scale, of), *rest]
-            for ending, of in (("", size), ("_unseen", unseen_size or size))
-        ]
+    def commands(name, scale, longer):
+        size = f"{width * scale}x{height * scale}"
+        return [["lattice", str(HERE / f"{scene}.toml"), "--size", size, "--steps", str(count), "--no-account"]
+                for scene, count in ((name, steps), (f"{name}_unseen", steps), (name, steps * longer))]
 
-    return command
+    return commands
 
 
-def solve(name, scale):
+def solve(name, scale, longer):
     """Poisson's equation in space, and one that is stretched."""
     n = 64 * scale
     rest = ["--preconditioner", "none", "--tolerance", "1e-5", "--most", "4000"]
-    return [["solve", f"poisson:{n}x{n}x{n}", *rest], ["solve", f"poisson:{n}x{n}x{n // 2}:1,2,1", *rest]]
+    first = ["solve", f"poisson:{n}x{n}x{n}", *rest]
+    return [first, ["solve", f"poisson:{n}x{n}x{n // 2}:1,2,1", *rest], first]
 
 
-def cloth(name, scale):
+def cloth(name, scale, longer):
     points = str(384 * scale + 1)
     rest = ["--points", points, points, "--no-compare", "--check", "1"]
-    return [["cloth", str(HERE / f"cloth{ending}.toml"), *rest] for ending in ("", "_unseen")]
+    return [["cloth", str(HERE / f"{scene}.toml"), *rest, "--steps", str(100 * count)]
+            for scene, count in (("cloth", 1), ("cloth_unseen", 1), ("cloth", longer))]
 
 
 def results(*names_and_tolerances):
@@ -59,10 +58,10 @@ def results(*names_and_tolerances):
 # Which results count, and how exact they must be: from the program as it is, and from doubles. Boiling is chaotic: cells that are
 # about to boil do so or not, whatever the rounding. A cloth moves by millimetres in a metre, so that its tolerances are smaller.
 PROGRAMS = {
-    "heat": (lattice((1024, 1024), 400), results("lattice::temperature", "1e-3"), results("lattice::temperature", "1e-5")),
-    "reaction": (lattice((1024, 1024), 400), results("lattice::u", "1e-2", "lattice::v", "1e-2"),
+    "heat": (lattice(1024, 1024, 200), results("lattice::temperature", "1e-2"), results("lattice::temperature", "1e-5")),
+    "reaction": (lattice(1024, 1024, 100), results("lattice::u", "1e-2", "lattice::v", "1e-2"),
                  results("lattice::u", "1e-4", "lattice::v", "1e-4")),
-    "boiling": (lattice((1024, 640), 100), results("lattice::temperature", "2e-3"), results("lattice::temperature", "2e-3")),
+    "boiling": (lattice(1024, 640, 100), results("lattice::temperature", "2e-3"), results("lattice::temperature", "2e-3")),
     "gradients": (solve, ["--allow-decisions", *results("linear::x", "1e-3")], ["--allow-decisions", *results("linear::x", "1e-4")]),
     "cloth": (cloth, results("cloth::p", "1e-5", "cloth::d", "1e-2"), results("cloth::p", "1e-6", "cloth::d", "1e-3")),
 }
@@ -87,7 +86,7 @@ def timed(command, environment, rounds):
 def tune(name, start, arguments):
     """Searches from one start. Returns a row of the table."""
     commands, *tolerances = PROGRAMS[name]
-    seen, unseen = [[str(arguments.bin / words[0]), *words[1:]] for words in commands(name, arguments.scale)]
+    seen, unseen, long = [[str(arguments.bin / words[0]), *words[1:]] for words in commands(name, arguments.scale, arguments.longer)]
     run = f"{name}_{start}"
     out = arguments.out / run
     environment = {"SK_DEVICE": arguments.device, "SK_CACHE": str(arguments.out / "cache")}
@@ -109,7 +108,7 @@ def tune(name, start, arguments):
     kept = next((file for file in (f"{out}.toml", f"{out}.toml.rejected") if pathlib.Path(file).exists()), None)
     if kept and report["tuned"]["setting"]:
         plain = {"SK_CONFIG": environment.get("SK_CONFIG", "")}
-        row["plain"], row["with"] = timed(seen, [environment | plain, environment | {"SK_CONFIG": kept}], arguments.rounds)
+        row["plain"], row["with"] = timed(long, [environment | plain, environment | {"SK_CONFIG": kept}], arguments.rounds)
     return row
 
 
@@ -140,6 +139,7 @@ def main():
     parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--device", required=True)
     parser.add_argument("--scale", type=int, default=1)
+    parser.add_argument("--longer", type=int, default=1)
     parser.add_argument("--budget", default="60s")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--programs", type=lambda text: text.split(","), default=list(PROGRAMS))

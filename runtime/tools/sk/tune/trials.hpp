@@ -72,6 +72,9 @@ class Trials {
   /// Runs a setting until it has been timed this often. Throws OutOfBudget.
   void time(const Setting& setting, std::size_t count);
 
+  /// Runs are no longer refused: what the search has found is compared with the program as it is, even if the budget has ended the search.
+  void liftBudget() { hasBudget_ = false; }
+
   /// All trials, in the order in which they ran first.
   std::vector<const Trial*> all() const;
   int runs() const { return runs_; }
@@ -94,6 +97,7 @@ class Trials {
   std::map<Setting, Trial> trials_;
   std::vector<Setting> order_;
   int runs_ = 0;
+  bool hasBudget_ = true;
   double longest_ = 0;  ///< seconds of a run
 };
 
