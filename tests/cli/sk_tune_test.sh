@@ -118,6 +118,16 @@ prints 'rejected: '
 has wide.toml.rejected 'precision = "single"'
 [[ ! -e wide.toml ]] || broken 'the rejected file has its own name'
 
+# What is wide because a file says so becomes narrow together: a kernel alone, or a stream alone, would convert all elements.
+printf '[kernels."*"]\nprecision = "double"\n[streams."*"]\nstorage = "double"\n' >base.toml
+for attempt in 1 2 3; do
+  SK_CONFIG=$place/base.toml run 0 --tolerance 1e-4 --budget 100s -o light.toml --json all.json -- "$program" light 300000
+  grep -qF '[kernels."tuned::blend"]' light.toml && break
+  ((attempt < 3)) || busy
+done
+json "
+assert tuned['tuned::blend', 'precision'] == 'single' and tuned['tuned::state', 'storage'] == 'single', tuned"
+
 # A search starts from the file that is in force; one of another program is refused.
 printf '[kernels."tuned::subtract"]\nprecision = "double"\ncontraction = "exact"\n' >base.toml
 export SK_CONFIG=$place/base.toml

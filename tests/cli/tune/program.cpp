@@ -14,6 +14,7 @@
 //   reads COUNT           reads in all ways that there are
 //   called COUNT          calls a kernel in doubles that it could do without
 //   fork COUNT            reads what settles, after a fork
+//   light COUNT           reads the result of many calls that take little more than reading and writing elements
 //   busy COUNT            reads what settles in several calls, after half a second of work on the host
 //   text FILE COUNT       reads nothing, but writes its sum to FILE as JSON
 //   array FILE COUNT      likewise what settles, to a .npy file
@@ -87,6 +88,12 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
     tuned::smooth.with({.precision = sk::Precision::Double, .contraction = sk::Contraction::Exact})(
         x, streams.rest);
     streams.rest.read();
+    return 0;
+  }
+  if (kind == "light") {
+    streams.state.write(values);
+    for (int i = 0; i < 200; ++i) tuned::blend(x, streams.state, streams.state);
+    streams.state.read();
     return 0;
   }
   if (kind == "busy") {

@@ -90,7 +90,7 @@ class KernelSteps {
     choices_.others.push_back({.changes = {{{"kernels", kernel_.name, key}, std::string(value)}},
                                .of = kernel_.name,
                                .seconds = kernel_.seconds,
-                               .isWide = key == "precision" && (value == "extended" || value == "double")});
+                               .isUnlikely = key == "precision" && value != "single"});
   }
 
   /// Whether all calls have this value already.
@@ -119,6 +119,7 @@ void addStreams(const Process& run, double seconds, Choices& choices) {
   const double bytes = std::accumulate(
       run.streams.begin(), run.streams.end(), 0.0,
       [](double sum, const Stream& stream) { return sum + static_cast<double>(stream.bytes); });
+  const bool isNative = std::ranges::all_of(run.devices, &sk::results::Device::isNative);
   for (const Stream& stream : run.streams) {
     const std::string name = stream.name.empty() ? "*" : stream.name;
     Step step{.changes = {}, .of = name, .isKernel = false};
@@ -132,6 +133,7 @@ void addStreams(const Process& run, double seconds, Choices& choices) {
       for (const std::string_view storage : {"half", "single"}) {
         if (storage == stream.storage) continue;
         step.changes = {{{"streams", name, "storage"}, std::string(storage)}};
+        step.isUnlikely = storage == "half" && isNative;
         choices.others.push_back(step);
         if (isWide && storage == "single") choices.lowered.push_back(step);
       }
@@ -182,7 +184,7 @@ Choices choicesOf(const Process& run) {
   choices.untried.emplace_back("order = \"any\": results would differ from run to run");
   choices.untried.emplace_back("target: results are the same, and the device takes the faster one");
   std::ranges::stable_sort(choices.others, std::greater(), &Step::seconds);
-  std::ranges::stable_partition(choices.others, std::logical_not(), &Step::isWide);
+  std::ranges::stable_partition(choices.others, std::logical_not(), &Step::isUnlikely);
   std::ranges::stable_sort(choices.raised, std::less(), &Step::seconds);
   return choices;
 }

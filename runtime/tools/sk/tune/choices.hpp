@@ -17,11 +17,13 @@ struct Step {
   std::string of;  ///< the kernel, or the stream; "*" for streams without a name
   bool isKernel = true;
   double seconds = 0;  ///< of the kernel; of a stream, a share of all by its size
-  bool isWide = false;  ///< a precision of more bits than float's, which is rarely faster
+  /// It is rarely faster: a precision other than float's, because wide ones take longer and half is emulated, or halves in native streams,
+  /// which are floats that are rounded.
+  bool isUnlikely = false;
 };
 
 struct Choices {
-  /// Other values of one key each, which may be faster: the costliest kernels and streams first, and wide precisions after all others, so
+  /// Other values of one key each, which may be faster: the costliest kernels and streams first, and unlikely ones after all others, so
   /// that a search which the budget ends has tried what promises most.
   std::vector<Step> others;
   /// All that makes a kernel or a stream as exact as it can be, the costliest last.
