@@ -58,13 +58,9 @@ SK_RESULTS=plain "$program" both 500 >/dev/null
 SK_RESULTS=changed SK_CONFIG=tuned.toml "$program" both 500 >/dev/null
 ! cmp -s plain changed || broken 'the file changes nothing'
 
-# On devices that queue calls, too, kernels are timed and not what the host does meanwhile.
-for attempt in 1 2 3; do
-  SK_DEVICE=llvmpipe run 0 --tolerance 1e-3 --budget 100s -o busy.toml -- "$program" busy 20000
-  grep -qF 'precision = "single"' busy.toml && break
-  ((attempt < 3)) || busy
-done
-has busy.toml '[kernels."tuned::settle"]'
+# On devices that queue calls, too, kernels are timed, and not the half second that the host works meanwhile.
+SK_DEVICE=llvmpipe run 0 --tolerance 1e-3 --budget 100s -o busy.toml --json all.json -- "$program" busy 500
+json "assert max(all['asItIs']['seconds']) < 0.4, all['asItIs']"
 
 # More exact: the kernel that loses digits in floats, and no other. The right results come from the cache.
 run 0 --tolerance 1e-6 --budget 100s --json all.json -- "$program" both 12000
@@ -118,15 +114,12 @@ prints 'rejected: '
 has wide.toml.rejected 'precision = "single"'
 [[ ! -e wide.toml ]] || broken 'the rejected file has its own name'
 
-# What is wide because a file says so becomes narrow together: a kernel alone, or a stream alone, would convert all elements.
+# What is wide because a file says so is tried as floats together: a kernel alone, or a stream alone, would convert all elements.
 printf '[kernels."*"]\nprecision = "double"\n[streams."*"]\nstorage = "double"\n' >base.toml
-for attempt in 1 2 3; do
-  SK_CONFIG=$place/base.toml run 0 --tolerance 1e-4 --budget 100s -o light.toml --json all.json -- "$program" light 300000
-  grep -qF '[kernels."tuned::blend"]' light.toml && break
-  ((attempt < 3)) || busy
-done
+SK_CONFIG=$place/base.toml run 0 --tolerance 1e-4 --budget 100s -o light.toml --json all.json -- "$program" light 300000
 json "
-assert tuned['tuned::blend', 'precision'] == 'single' and tuned['tuned::state', 'storage'] == 'single', tuned"
+narrow = {('tuned::blend', 'precision'): 'single', ('tuned::state', 'storage'): 'single'}
+assert any(narrow.items() <= trial.items() for trial in tried), tried"
 
 # A search starts from the file that is in force; one of another program is refused.
 printf '[kernels."tuned::subtract"]\nprecision = "double"\ncontraction = "exact"\n' >base.toml
