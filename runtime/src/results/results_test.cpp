@@ -51,7 +51,8 @@ void addTo(Recorder& recorder, const std::string& name, T value) {
 double secondsOf(const std::string& setting, const ResultsFile& file, std::initializer_list<int> calls) {
   Recorder recorder(file.path + setting);
   const sk::Device device = sk::Device::native();
-  constexpr sk::program::Kernel kernel{.name = "warm"};
+  sk::program::Kernel kernel{};
+  kernel.name = "warm";
   recorder.addCall(sk::detail::deviceStateOf(device), kernel, nullptr, {}, {});
   for (const int seconds : calls) recorder.addTime("warm", 0, seconds * Recorder::Time{1'000'000'000}, true);
   recorder.write();
