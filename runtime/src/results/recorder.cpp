@@ -74,6 +74,9 @@ std::uint64_t hashOfValues(std::uint64_t hash, const Values& values) {
   return hash;
 }
 
+/// What a read counts towards the limit: as many bytes as on a reference device, which gives doubles, so that the same reads are kept there.
+std::size_t bytesAsDoubles(const Values& values) { return values.count() * sizeof(double); }
+
 /// The variants and choices of a kernel, or of a reduction whose fold it is.
 Kernel kernelOf(const DeviceState& device, const program::Kernel& kernel,
                 const program::Reduction* reduction) {
@@ -180,12 +183,13 @@ void Recorder::keep(const std::string& name, Values values) {
   Series& series = recorded.series;
   series.hash = hashOfValues(series.hash, values);
   const bool isFirst = series.reads++ < Series::keptAtEnds;
-  makeRoom(recorded, values.bytes.size());
-  if (bytes_ + values.bytes.size() > limit_) {
+  const std::size_t bytes = bytesAsDoubles(values);
+  makeRoom(recorded, bytes);
+  if (bytes_ + bytes > limit_) {
     series.droppedBytes += values.bytes.size();
     return;
   }
-  bytes_ += values.bytes.size();
+  bytes_ += bytes;
   if (isFirst) return series.first.push_back(std::move(values));
   recorded.last.push_back(std::move(values));
 }
@@ -195,7 +199,7 @@ void Recorder::makeRoom(Recorded& recorded, std::size_t bytes) {
   while (!recorded.last.empty() && (recorded.last.size() >= Series::keptAtEnds || bytes_ + bytes > limit_)) {
     if (recorded.last.size() < Series::keptAtEnds)
       recorded.series.droppedBytes += recorded.last.front().bytes.size();
-    bytes_ -= recorded.last.front().bytes.size();
+    bytes_ -= bytesAsDoubles(recorded.last.front());
     recorded.last.pop_front();
   }
 }

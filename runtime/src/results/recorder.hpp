@@ -37,7 +37,7 @@ class Recorder {
   using Time = std::int64_t;  ///< nanoseconds of the monotonic clock
   /// The number of streams that hold the results of operations with scalars.
   static constexpr std::uint32_t scalarNumber = ~std::uint32_t{0};
-  /// The most bytes of numbers that the file holds.
+  /// The most bytes of numbers that the file holds, floats counted as doubles.
   static constexpr std::uint64_t mostBytes = std::uint64_t{256} << 20;
 
   /// Null unless SK_RESULTS names a file, which the first call reads.

@@ -146,7 +146,7 @@ TEST_CASE("a read in the middle changes the hash of its name") {
 
 TEST_CASE("reads beyond the limit are left out, and the file says so") {
   const ResultsFile file;
-  constexpr std::uint64_t limit = 6 * sizeof(float);
+  constexpr std::uint64_t limit = 6 * sizeof(double);
   Recorder recorder(file.path, limit);
   for (int i = 0; i < 7; ++i) addTo(recorder, "sum", static_cast<float>(i));
   addTo(recorder, "late", 1.0f);
@@ -157,6 +157,20 @@ TEST_CASE("reads beyond the limit are left out, and the file says so") {
   CHECK(process.series.at(1).droppedBytes == sizeof(float));
   REQUIRE(process.notes.size() == 2);
   CHECK(process.notes[1] == "4 byte(s) of 'late' are left out, because results end at 0 MiB");
+}
+
+TEST_CASE("the limit leaves out the same reads of floats as of doubles") {
+  const auto keptOf = [](auto value) {
+    const ResultsFile file;
+    Recorder recorder(file.path, 3 * sizeof(double));
+    for (const char* name : {"u", "v", "u", "v"}) addTo(recorder, name, value);
+    recorder.write();
+    std::vector<std::size_t> kept;
+    for (const Series& series : file.read().series) kept.push_back(series.first.size() + series.last.size());
+    return kept;
+  };
+  CHECK(keptOf(1.0f) == std::vector<std::size_t>{2, 1});
+  CHECK(keptOf(1.0) == keptOf(1.0f));
 }
 
 TEST_CASE(

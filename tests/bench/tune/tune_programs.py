@@ -27,7 +27,7 @@ def lattice(width, height, steps):
     """The commands of a lattice: on the scene of its name, on the unseen one, and on the first for longer."""
 
     def commands(name, scale, longer):
-        size = f"{width * scale}x{height * scale}"
+        size = f"{int(width * scale)}x{int(height * scale)}"
         return [["lattice", str(HERE / f"{scene}.toml"), "--size", size, "--steps", str(count), "--no-account"]
                 for scene, count in ((name, steps), (f"{name}_unseen", steps), (name, steps * longer))]
 
@@ -36,14 +36,14 @@ def lattice(width, height, steps):
 
 def solve(name, scale, longer):
     """Poisson's equation in space, and one that is stretched."""
-    n = 64 * scale
+    n = int(64 * scale)
     rest = ["--preconditioner", "none", "--tolerance", "1e-5", "--most", "4000"]
     first = ["solve", f"poisson:{n}x{n}x{n}", *rest]
     return [first, ["solve", f"poisson:{n}x{n}x{n // 2}:1,2,1", *rest], first]
 
 
 def cloth(name, scale, longer):
-    points = str(384 * scale + 1)
+    points = str(int(384 * scale) + 1)
     rest = ["--points", points, points, "--no-compare", "--check", "1"]
     return [["cloth", str(HERE / f"{scene}.toml"), *rest, "--steps", str(100 * count)]
             for scene, count in (("cloth", 1), ("cloth_unseen", 1), ("cloth", longer))]
@@ -138,7 +138,7 @@ def main():
     parser.add_argument("bin", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("out", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--device", required=True)
-    parser.add_argument("--scale", type=int, default=1)
+    parser.add_argument("--scale", type=float, default=1)
     parser.add_argument("--longer", type=int, default=1)
     parser.add_argument("--budget", default="60s")
     parser.add_argument("--rounds", type=int, default=5)

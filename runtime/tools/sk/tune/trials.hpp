@@ -78,6 +78,8 @@ class Trials {
   /// All trials, in the order in which they ran first.
   std::vector<const Trial*> all() const;
   int runs() const { return runs_; }
+  /// Whether the program waits around each kernel, because its devices queue calls.
+  bool measures() const { return options_.measures; }
   /// The configuration file of a setting.
   std::string fileOf(const Setting& setting, const FileTexts& texts = {}) const {
     return base_.text(setting, facts_, texts);
