@@ -51,6 +51,13 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
   return sum;
 }
 
+/// A vector of the name by which `sk tune` knows the solution; without one if it is divided.
+Vector solutionIn(const Space& space) {
+  constexpr sk::Storage storage = sk::Storage::Double;
+  if (space.isDivided()) return space.stream<float>(storage);
+  return {space.device().stream<float>(space.shape(), storage, "linear::x"), storage};
+}
+
 class DeviceResidual : public Residual {
  public:
   DeviceResidual(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
@@ -62,7 +69,8 @@ class DeviceResidual : public Residual {
         options_(doubleArithmetic().options()),
         foldOptions_(doubleArithmetic().foldOptions()) {
     const Space space = matrix.space(device);
-    for (Vector* v : {&b_, &x_, &xNext_, &r_, &rNext_}) *v = space.stream<float>(sk::Storage::Double);
+    for (Vector* v : {&b_, &r_, &rNext_}) *v = space.stream<float>(sk::Storage::Double);
+    for (Vector* v : {&x_, &xNext_}) *v = solutionIn(space);
     if (exact_.size() > 1) q_ = space.stream<float>(sk::Storage::Double);
     for (Vector* v : {&rr_, &xx_, &largestR_, &largestX_})
       *v = device.stream<float>({1}, sk::Storage::Double);

@@ -10,6 +10,7 @@
 namespace examples {
 namespace {
 
+/// Of a cloth in single precision, a configuration file may choose the storage.
 sk::Storage storageFor(sk::Precision precision) {
   switch (precision) {
     case sk::Precision::Extended: return sk::Storage::Extended;
@@ -18,7 +19,7 @@ sk::Storage storageFor(sk::Precision precision) {
     case sk::Precision::Half:
     case sk::Precision::Single: break;
   }
-  return sk::Storage::Single;
+  return sk::Storage::Default;
 }
 
 cloth::Links linksOf(const LinkConstants& k) {
@@ -98,8 +99,8 @@ Simulation::Simulation(const Space& space, const Scene& scene, const Features& f
       features_(features),
       constants_(constantsOf(scene)),
       options_{.precision = precision},
-      p_(space.stream<sk::float4>(storageFor(precision))),
-      d_(space.stream<sk::float3>(storageFor(precision))),
+      p_(namedStream<sk::float4>(space, storageFor(precision), "cloth::p")),
+      d_(namedStream<sk::float3>(space, storageFor(precision), "cloth::d")),
       bodies_(std::make_unique<Bodies>()) {
   const FirstState first = firstState(scene, constants_);
   p_.write(first.positions);

@@ -65,9 +65,10 @@ std::vector<double> firstTemperature(const Model& model, const Initial& initial,
             initial.profile == Profile::Conduction ? conducted(model, x, y) : initial.temperature;
         const double across = (static_cast<double>(x) + 0.5) / static_cast<double>(g.width);
         const double up = (static_cast<double>(y) + 0.5) / static_cast<double>(g.height);
-        const double wave =
-            std::cos(2.0 * std::numbers::pi * initial.rolls * across) * std::sin(std::numbers::pi * up);
-        values.push_back(still + initial.noise * (initial.rolls > 0.0 ? wave : noise.symmetric()));
+        const auto wave = [&] {
+          return std::cos(2.0 * std::numbers::pi * initial.rolls * across) * std::sin(std::numbers::pi * up);
+        };
+        values.push_back(still + initial.noise * (initial.rolls > 0.0 ? wave() : noise.symmetric()));
       }
     }
   }

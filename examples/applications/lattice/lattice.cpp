@@ -16,15 +16,16 @@
 namespace examples {
 namespace {
 
+/// Of streams of a scene in single precision, a configuration file may choose the storage.
 sk::Storage storageFor(sk::Precision precision) {
   switch (precision) {
     case sk::Precision::Default:
-    case sk::Precision::Single: return sk::Storage::Single;
+    case sk::Precision::Single: return sk::Storage::Default;
     case sk::Precision::Half: return sk::Storage::Half;
     case sk::Precision::Extended: return sk::Storage::Extended;
     case sk::Precision::Double: return sk::Storage::Double;
   }
-  return sk::Storage::Single;
+  return sk::Storage::Default;
 }
 
 lattice::Sides sidesOf(const Boundary& boundary) {
@@ -64,14 +65,15 @@ Lattice::Lattice(const Space& space, const Model& model)
       options_{.precision = model.precision},
       sums_(sumsIn(model.precision)) {
   allocate(now_);
-  if (model.latentHeat) warmed_.emplace(makeStream());
+  if (model.latentHeat) warmed_.emplace(makeStream("warmed"));
 }
 
 Lattice::Lattice(sk::Device& device, const Model& model)
     : Lattice(Space(device, shapeOf(model.grid)), model) {}
 
-GridStream<float> Lattice::makeStream() {
-  GridStream<float> stream = space_.stream<float>(storageFor(model_.precision));
+GridStream<float> Lattice::makeStream(std::string_view name) {
+  GridStream<float> stream =
+      namedStream<float>(space_, storageFor(model_.precision), fmt::format("lattice::{}", name));
   stream.fill(0.0f);
   return stream;
 }
@@ -79,7 +81,7 @@ GridStream<float> Lattice::makeStream() {
 void Lattice::allocate(Fields& fields) {
   for (const Field field : fieldsOf(model_)) {
     auto& place = fields[placeOf(field)];
-    if (!place) place.emplace(makeStream());
+    if (!place) place.emplace(makeStream(nameOf(field)));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -68,7 +69,7 @@ class Lattice {
   static std::size_t placeOf(Field field) { return static_cast<std::size_t>(field); }
   GridStream<float>& in(Fields& fields, Field field) { return *fields[placeOf(field)]; }
 
-  GridStream<float> makeStream();
+  GridStream<float> makeStream(std::string_view name);
   void allocate(Fields& fields);
   void step(Fields& from, Fields& to);  ///< which may be one
   void stepFlow(Fields& from, Fields& to);

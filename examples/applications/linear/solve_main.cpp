@@ -38,7 +38,7 @@ struct Settings {
   std::string matrix;
   std::filesystem::path rightHandSide, solution, json, svg;
   std::string solver = "cg", preconditioner = "jacobi", layout = "auto";
-  std::string precision = "single", storage = "single", entries, accumulate = "compensated";
+  std::string precision = "single", storage = "default", entries, accumulate = "compensated";
   std::string ordering = "colours", reorder = "none";
   double drop = 1e-3;
   int fill = 20;
@@ -60,7 +60,8 @@ constexpr Choice<sk::Precision> precisions[] = {{"half", sk::Precision::Half},
                                                 {"single", sk::Precision::Single},
                                                 {"extended", sk::Precision::Extended},
                                                 {"double", sk::Precision::Double}};
-constexpr Choice<sk::Storage> storages[] = {{"half", sk::Storage::Half},
+constexpr Choice<sk::Storage> storages[] = {{"default", sk::Storage::Default},
+                                            {"half", sk::Storage::Half},
                                             {"single", sk::Storage::Single},
                                             {"extended", sk::Storage::Extended},
                                             {"double", sk::Storage::Double}};
@@ -129,7 +130,10 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->capture_default_str();
   cli.add_option("--precision", s.precision, "what iterations compute in: half, single, extended or double")
       ->capture_default_str();
-  cli.add_option("--storage", s.storage, "what vectors are stored in: half, single, extended or double")
+  cli.add_option(
+         "--storage", s.storage,
+         "what vectors are stored in: half, single, extended or double; by default what a configuration "
+         "file says, else single")
       ->capture_default_str();
   cli.add_option("--entries", s.entries, "what the matrix is stored in; as --storage if it is not given");
   cli.add_option("--accumulate", s.accumulate,
@@ -276,12 +280,17 @@ void judge(const linear::System& system, const linear::Solution& solution, linea
              account.factors, account.factorEntries, direct.seconds * 1000.0);
 }
 
+/// Residuals are computed in doubles from the entries as they are stored, so that a configuration file must not round them.
+sk::Storage storageOfEntries(const Settings& s) {
+  const sk::Storage storage = chosen(storages, s.entries.empty() ? s.storage : s.entries, "storage");
+  return storage == sk::Storage::Default ? sk::Storage::Single : storage;
+}
+
 void solveSystem(examples::Application& app, Settings& s) {
-  const linear::Arithmetic arithmetic{
-      .precision = chosen(precisions, s.precision, "precision"),
-      .matrix = chosen(storages, s.entries.empty() ? s.storage : s.entries, "storage"),
-      .vectors = chosen(storages, s.storage, "storage"),
-      .accumulate = chosen(accumulations, s.accumulate, "accumulation")};
+  const linear::Arithmetic arithmetic{.precision = chosen(precisions, s.precision, "precision"),
+                                      .matrix = storageOfEntries(s),
+                                      .vectors = chosen(storages, s.storage, "storage"),
+                                      .accumulate = chosen(accumulations, s.accumulate, "accumulation")};
   const linear::MethodKind& methodKind = examples::rowNamed(linear::methodKinds(), s.solver, "solver");
   const linear::PreconditionerKind& preconditionerKind =
       examples::rowNamed(linear::preconditionerKinds(), s.preconditioner, "preconditioner");

@@ -136,6 +136,10 @@ class DeviceState {
   /// Traces all later work. Throws sk::Error if the file cannot be written.
   virtual void startTrace(const std::string& file) = 0;
   virtual void finish() = 0;
+  /// Measures the work that is queued from now on by the device's own clock. False if it has none, as on devices in software.
+  virtual bool beginMeasuring() { return false; }
+  /// Waits for the work since beginMeasuring(), and returns the nanoseconds that it took.
+  virtual std::int64_t endMeasuring() { return 0; }
   virtual void release() = 0;
   virtual void makeCurrent() = 0;
   /// Throws sk::Error in the child of a fork if the device works in the parent alone. Operations that are only collected

@@ -104,6 +104,27 @@ void GlDevice::finish() {
   throwPendingError();
 }
 
+bool GlDevice::beginMeasuring() {
+  if (isSoftware() || !gl::hasTimestamps(context_.capabilities())) return false;
+  const GlContext::Scope scope(context_);
+  if (!begun_) {
+    begun_ = gl::Timestamp(context_.bound().deletions);
+    ended_ = gl::Timestamp(context_.bound().deletions);
+  }
+  begun_.take();
+  return true;
+}
+
+std::int64_t GlDevice::endMeasuring() {
+  {
+    const GlContext::Scope scope(context_);
+    ended_.take();
+  }
+  finish();
+  const GlContext::Scope scope(context_);
+  return ended_.result().value_or(0) - begun_.result().value_or(0);
+}
+
 // Lists of append outputs, stacks and temporaries of plans have the element types that the kernel declares.
 // Other storages may exceed the device's limits: a vector of doubles may have more planes than one of floats.
 void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,

@@ -12,6 +12,7 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "gl/open_context.hpp"
+#include "gl/queue_points.hpp"
 #include "gl_device/gl_context.hpp"
 #include "gl_device/gl_memory.hpp"
 #include "gl_device/gl_passes.hpp"
@@ -22,9 +23,9 @@ namespace sk {
 
 /// The user's choices for a device that has been found.
 struct DeviceChoices {
-  std::int32_t textureLimit = 0;    ///< largest texture size; 0: the device's own limit
+  std::int32_t textureLimit = 0;  ///< largest texture size; 0: the device's own limit
   bool guaranteedLimits = false;
-  bool pairs = false;               ///< doubles are pairs of floats even if GLSL has double
+  bool pairs = false;  ///< doubles are pairs of floats even if GLSL has double
   std::optional<Barrier> barrier = {};  ///< nullopt: chosen by testing the device's arithmetic
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
@@ -62,6 +63,8 @@ class GlDevice final : public DeviceState {
   void startTrace(const std::string& file) override;
   std::optional<std::int64_t> availableMemory() override;
   void finish() override;
+  bool beginMeasuring() override;
+  std::int64_t endMeasuring() override;
   void release() override { context_.handle().release(); }
   void makeCurrent() override;
   void checkProcess() const override { context_.handle().checkProcess(); }
@@ -113,6 +116,7 @@ class GlDevice final : public DeviceState {
   GlMemory memory_{context_, trace};
   GlPrograms programs_;
   GlPasses passes_{context_};
+  gl::Timestamp begun_, ended_;  ///< of beginMeasuring() and endMeasuring(), made when they are needed
 };
 
 /// The scope of a call, in which GL may be called (GlContext::Scope). There is one at a time.

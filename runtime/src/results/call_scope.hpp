@@ -29,7 +29,10 @@ class CallScope {
   CallScope(DeviceState& device, std::string_view kernel)
       : recorder_(recorderOf(device)), device_(device), kernel_(kernel), work_(device) {
     if (recorder_ == nullptr) return;
-    if (recorder_->measures() && device_.hasQueue()) device_.finish();
+    if (recorder_->measures() && device_.hasQueue()) {
+      device_.finish();
+      hasOwnClock_ = device_.beginMeasuring();
+    }
     begin_ = Trace::now();
   }
   ~CallScope() {
@@ -40,12 +43,18 @@ class CallScope {
 
  private:
   void end() noexcept {
+    Recorder::Time end = 0;
     try {
-      if (recorder_->measures() && device_.hasQueue()) device_.finish();
+      if (hasOwnClock_) {
+        end = begin_ + device_.endMeasuring();
+      } else if (recorder_->measures() && device_.hasQueue()) {
+        device_.finish();
+      }
     } catch (const std::exception&) {
       return;  // the device is lost; the next operation says so
     }
-    recorder_->addTime(kernel_, begin_, Trace::now(), recorder_->measures() || !device_.hasQueue());
+    if (!hasOwnClock_) end = Trace::now();
+    recorder_->addTime(kernel_, begin_, end, recorder_->measures() || !device_.hasQueue());
   }
 
   Recorder* const recorder_;
@@ -53,6 +62,7 @@ class CallScope {
   const std::string_view kernel_;
   const InternalWork work_;
   Recorder::Time begin_ = 0;
+  bool hasOwnClock_ = false;  ///< the call is measured by the device's clock, without the time of the waits
 };
 
 /// Adds a call that has been checked.

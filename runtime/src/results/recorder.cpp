@@ -74,6 +74,9 @@ std::uint64_t hashOfValues(std::uint64_t hash, const Values& values) {
   return hash;
 }
 
+/// What a read counts towards the limit: as many bytes as on a reference device, which gives doubles, so that the same reads are kept there.
+std::size_t bytesAsDoubles(const Values& values) { return values.count() * sizeof(double); }
+
 /// The variants and choices of a kernel, or of a reduction whose fold it is.
 Kernel kernelOf(const DeviceState& device, const program::Kernel& kernel,
                 const program::Reduction* reduction) {
@@ -180,12 +183,13 @@ void Recorder::keep(const std::string& name, Values values) {
   Series& series = recorded.series;
   series.hash = hashOfValues(series.hash, values);
   const bool isFirst = series.reads++ < Series::keptAtEnds;
-  makeRoom(recorded, values.bytes.size());
-  if (bytes_ + values.bytes.size() > limit_) {
+  const std::size_t bytes = bytesAsDoubles(values);
+  makeRoom(recorded, bytes);
+  if (bytes_ + bytes > limit_) {
     series.droppedBytes += values.bytes.size();
     return;
   }
-  bytes_ += values.bytes.size();
+  bytes_ += bytes;
   if (isFirst) return series.first.push_back(std::move(values));
   recorded.last.push_back(std::move(values));
 }
@@ -195,7 +199,7 @@ void Recorder::makeRoom(Recorded& recorded, std::size_t bytes) {
   while (!recorded.last.empty() && (recorded.last.size() >= Series::keptAtEnds || bytes_ + bytes > limit_)) {
     if (recorded.last.size() < Series::keptAtEnds)
       recorded.series.droppedBytes += recorded.last.front().bytes.size();
-    bytes_ -= recorded.last.front().bytes.size();
+    bytes_ -= bytesAsDoubles(recorded.last.front());
     recorded.last.pop_front();
   }
 }
@@ -266,13 +270,25 @@ void Recorder::addTime(std::string_view kernel, Time begin, Time end, bool isMea
   add([&] {
     const auto found = kernels_.find(kernel);
     if (found == kernels_.end()) return;
-    ++found->second.kernel.calls;
-    if (isMeasured) found->second.kernel.seconds += static_cast<double>(end - begin) * 1e-9;
+    Called& call = found->second;
+    ++call.kernel.calls;
+    if (!isMeasured) return;
+    const double seconds = static_cast<double>(end - begin) * 1e-9;
+    if (call.kernel.calls == 1) call.firstSeconds = seconds;
+    call.kernel.seconds += seconds;
   });
 }
 
 void Recorder::addNote(std::string_view note) noexcept {
   add([&] { addNew(process_.notes, {std::string(note)}); });
+}
+
+Kernel Recorder::measured(const Called& call) const {
+  Kernel kernel = call.kernel;
+  if (!measures_ || kernel.calls < 2) return kernel;
+  const auto calls = static_cast<double>(kernel.calls);
+  kernel.seconds = (kernel.seconds - call.firstSeconds) * calls / (calls - 1);
+  return kernel;
 }
 
 void Recorder::write() noexcept {
@@ -283,7 +299,7 @@ void Recorder::write() noexcept {
     all.span = static_cast<double>(end_ - begin_) * 1e-9;
     all.hasTimes = measures_ || !isUnmeasured_;
     all.linkedKernels = program::LinkedFile::namesOfAll().kernels;
-    for (const std::string& name : kernelOrder_) all.kernels.push_back(kernels_.find(name)->second.kernel);
+    for (const std::string& name : kernelOrder_) all.kernels.push_back(measured(kernels_.find(name)->second));
     for (const auto& [name, stream] : streams_) all.streams.push_back(stream);
     for (const std::string& name : order_) {
       const Recorded& recorded = series_.find(name)->second;

@@ -37,7 +37,7 @@ class Recorder {
   using Time = std::int64_t;  ///< nanoseconds of the monotonic clock
   /// The number of streams that hold the results of operations with scalars.
   static constexpr std::uint32_t scalarNumber = ~std::uint32_t{0};
-  /// The most bytes of numbers that the file holds.
+  /// The most bytes of numbers that the file holds, floats counted as doubles.
   static constexpr std::uint64_t mostBytes = std::uint64_t{256} << 20;
 
   /// Null unless SK_RESULTS names a file, which the first call reads.
@@ -81,10 +81,14 @@ class Recorder {
     Kernel kernel;
     CallOptions called, used;  ///< of the last call that was added
     bool isNew = true;
+    double firstSeconds = 0;  ///< of the first call that was measured
   };
 
   template <class Add>
   void add(Add&& add) noexcept;
+  /// The kernel as the file has it: the first call of a kernel, in which a device that queues calls builds its programs, counts as the
+  /// mean of the others.
+  Kernel measured(const Called& call) const;
   void keep(const std::string& name, Values values);
   void makeRoom(Recorded& recorded, std::size_t bytes);
   void addComponents(const std::string& name, const program::Element& element, const std::byte* elements,

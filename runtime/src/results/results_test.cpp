@@ -12,6 +12,8 @@
 
 #include "results/recorder.hpp"
 #include "results/results_file.hpp"
+#include "sk/call.hpp"
+#include "sk/device.hpp"
 #include "sk/types.hpp"
 
 namespace {
@@ -43,6 +45,18 @@ struct ResultsFile {
 template <class T>
 void addTo(Recorder& recorder, const std::string& name, T value) {
   recorder.addValue(name, sk::ElementTraits<T>::element(), reinterpret_cast<const std::byte*>(&value));
+}
+
+/// The recorded seconds of a kernel whose calls took so many seconds.
+double secondsOf(const std::string& setting, const ResultsFile& file, std::initializer_list<int> calls) {
+  Recorder recorder(file.path + setting);
+  const sk::Device device = sk::Device::native();
+  sk::program::Kernel kernel{};
+  kernel.name = "warm";
+  recorder.addCall(sk::detail::deviceStateOf(device), kernel, nullptr, {}, {});
+  for (const int seconds : calls) recorder.addTime("warm", 0, seconds * Recorder::Time{1'000'000'000}, true);
+  recorder.write();
+  return file.read().kernels.at(0).seconds;
 }
 
 std::string whyUnreadable(std::string_view bytes) {
@@ -132,7 +146,7 @@ TEST_CASE("a read in the middle changes the hash of its name") {
 
 TEST_CASE("reads beyond the limit are left out, and the file says so") {
   const ResultsFile file;
-  constexpr std::uint64_t limit = 6 * sizeof(float);
+  constexpr std::uint64_t limit = 6 * sizeof(double);
   Recorder recorder(file.path, limit);
   for (int i = 0; i < 7; ++i) addTo(recorder, "sum", static_cast<float>(i));
   addTo(recorder, "late", 1.0f);
@@ -143,6 +157,29 @@ TEST_CASE("reads beyond the limit are left out, and the file says so") {
   CHECK(process.series.at(1).droppedBytes == sizeof(float));
   REQUIRE(process.notes.size() == 2);
   CHECK(process.notes[1] == "4 byte(s) of 'late' are left out, because results end at 0 MiB");
+}
+
+TEST_CASE("the limit leaves out the same reads of floats as of doubles") {
+  const auto keptOf = [](auto value) {
+    const ResultsFile file;
+    Recorder recorder(file.path, 3 * sizeof(double));
+    for (const char* name : {"u", "v", "u", "v"}) addTo(recorder, name, value);
+    recorder.write();
+    std::vector<std::size_t> kept;
+    for (const Series& series : file.read().series) kept.push_back(series.first.size() + series.last.size());
+    return kept;
+  };
+  CHECK(keptOf(1.0f) == std::vector<std::size_t>{2, 1});
+  CHECK(keptOf(1.0) == keptOf(1.0f));
+}
+
+TEST_CASE(
+    "the first call of a kernel, which builds programs, counts as the mean of the others where calls are "
+    "queued") {
+  const ResultsFile file;
+  CHECK(secondsOf(",times", file, {9, 1, 3}) == Approx(6));
+  CHECK(secondsOf(",times", file, {9}) == Approx(9));
+  CHECK(secondsOf("", file, {9, 1, 3}) == Approx(13));
 }
 
 TEST_CASE("the child of a fork writes no file") {

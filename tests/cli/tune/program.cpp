@@ -14,14 +14,18 @@
 //   reads COUNT           reads in all ways that there are
 //   called COUNT          calls a kernel in doubles that it could do without
 //   fork COUNT            reads what settles, after a fork
+//   light COUNT           reads the result of many calls that take little more than reading and writing elements
+//   busy COUNT            reads what settles in several calls, after half a second of work on the host
 //   text FILE COUNT       reads nothing, but writes its sum to FILE as JSON
 //   array FILE COUNT      likewise what settles, to a .npy file
 //   picture FILE COUNT    likewise, to a TGA file of one row
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <sys/wait.h>
@@ -84,6 +88,18 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
     tuned::smooth.with({.precision = sk::Precision::Double, .contraction = sk::Contraction::Exact})(
         x, streams.rest);
     streams.rest.read();
+    return 0;
+  }
+  if (kind == "light") {
+    streams.state.write(values);
+    for (int i = 0; i < 200; ++i) tuned::blend(x, streams.state, streams.state);
+    streams.state.read();
+    return 0;
+  }
+  if (kind == "busy") {
+    for (int i = 0; i < 4; ++i) tuned::settle(x, streams.state);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    streams.state.read();
     return 0;
   }
   if (kind == "fork") {

@@ -42,7 +42,7 @@ struct RunResult {
   sk::results::Process process = {};
   double wall = 0;  ///< seconds
 
-  /// The seconds that its devices took: of kernels if they are known, else from the first device to the last read.
+  /// The seconds of its kernels; if these are not known, those from the first device to the last read.
   double seconds() const;
 };
 

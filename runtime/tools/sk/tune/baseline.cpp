@@ -30,6 +30,7 @@ Baseline measure(const Application& application) {
   if (base.times.hasTimes) return base;
   RunResult measured = application.run({.measures = true});
   if (!measured.failure.empty()) failRun(application, measured.failure);
+  base.wall = std::max(base.wall, measured.wall);
   base.times = std::move(measured.process);
   return base;
 }

@@ -18,6 +18,9 @@ struct Baseline {
   sk::results::Process times;  ///< of a run that waits around each kernel, on devices that queue calls
   std::vector<std::string> differing;  ///< names of reads that are not the same in two runs
   double wall = 0;  ///< seconds of the longest run
+
+  /// Whether the times of kernels are known only if the program waits around each.
+  bool queues() const { return !process.hasTimes; }
 };
 
 /// Runs the program two or three times. Throws std::runtime_error if it fails.

@@ -43,6 +43,13 @@ class KernelSteps {
     if (!kernel_.tables.empty()) addEither("tables", "on", "off");
   }
 
+  void addLowered() {
+    if (!kernel_.hasFloats || !isWide()) return;
+    choices_.lowered.push_back({.changes = {{{"kernels", kernel_.name, "precision"}, "single"}},
+                                .of = kernel_.name,
+                                .seconds = kernel_.seconds});
+  }
+
   void addRaised() {
     Setting changes;
     const auto raise = [&](const std::string& key, std::string_view value, std::string_view byDefault) {
@@ -82,7 +89,8 @@ class KernelSteps {
     if (uses(key, value, byDefault)) return;
     choices_.others.push_back({.changes = {{{"kernels", kernel_.name, key}, std::string(value)}},
                                .of = kernel_.name,
-                               .seconds = kernel_.seconds});
+                               .seconds = kernel_.seconds,
+                               .isUnlikely = key == "precision" && value != "single"});
   }
 
   /// Whether all calls have this value already.
@@ -90,6 +98,13 @@ class KernelSteps {
     const std::vector<std::string> values = valuesOfKey(kernel_.used, key);
     return std::ranges::all_of(
         values, [&](const std::string& each) { return (each == "default" ? byDefault : each) == value; });
+  }
+
+  /// Whether some calls compute in more bits than float's.
+  bool isWide() const {
+    return std::ranges::any_of(valuesOfKey(kernel_.used, "precision"), [](const std::string& value) {
+      return value == "double" || value == "extended";
+    });
   }
 
   void leaveOut(std::string_view what, std::string_view why) {
@@ -104,16 +119,26 @@ void addStreams(const Process& run, double seconds, Choices& choices) {
   const double bytes = std::accumulate(
       run.streams.begin(), run.streams.end(), 0.0,
       [](double sum, const Stream& stream) { return sum + static_cast<double>(stream.bytes); });
+  const bool isNative = std::ranges::all_of(run.devices, &sk::results::Device::isNative);
   for (const Stream& stream : run.streams) {
     const std::string name = stream.name.empty() ? "*" : stream.name;
     Step step{.changes = {}, .of = name, .isKernel = false};
     step.seconds = bytes == 0 ? 0 : seconds * static_cast<double>(stream.bytes) / bytes;
-    for (const std::string_view storage : {"half", "single"}) {
-      if (storage == stream.storage) continue;
-      step.changes = {{{"streams", name, "storage"}, std::string(storage)}};
-      choices.others.push_back(step);
+    const bool isWide = stream.storage == "double" || stream.storage == "extended";
+    if (static_cast<double>(stream.bytes) < leastShare * bytes) {
+      choices.untried.push_back(fmt::format("{}: {:.1f} % of the bytes of all streams",
+                                            stream.name.empty() ? "streams without a name" : name,
+                                            100 * static_cast<double>(stream.bytes) / bytes));
+    } else {
+      for (const std::string_view storage : {"half", "single"}) {
+        if (storage == stream.storage) continue;
+        step.changes = {{{"streams", name, "storage"}, std::string(storage)}};
+        step.isUnlikely = storage == "half" && isNative;
+        choices.others.push_back(step);
+        if (isWide && storage == "single") choices.lowered.push_back(step);
+      }
     }
-    if (stream.storage != "double" && stream.storage != "extended") {
+    if (!isWide) {
       step.changes = {{{"streams", name, "storage"}, "double"}};
       choices.raised.push_back(step);
     }
@@ -148,6 +173,7 @@ Choices choicesOf(const Process& run) {
                                             seconds == 0 ? 0 : 100 * kernel.seconds / seconds));
     } else {
       steps.addOthers();
+      steps.addLowered();
     }
   }
   addStreams(run, seconds, choices);
@@ -158,6 +184,7 @@ Choices choicesOf(const Process& run) {
   choices.untried.emplace_back("order = \"any\": results would differ from run to run");
   choices.untried.emplace_back("target: results are the same, and the device takes the faster one");
   std::ranges::stable_sort(choices.others, std::greater(), &Step::seconds);
+  std::ranges::stable_partition(choices.others, std::logical_not(), &Step::isUnlikely);
   std::ranges::stable_sort(choices.raised, std::less(), &Step::seconds);
   return choices;
 }

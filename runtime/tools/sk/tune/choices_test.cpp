@@ -49,13 +49,13 @@ bool has(const std::vector<std::string>& texts, const std::string& text) {
 
 TEST_CASE("each other value of a kernel's choices is tried") {
   CHECK(textsOf(choicesOf(processWith({kernelNamed("k", 1)})).others) ==
-        std::vector<std::string>{"k: precision half", "k: precision double", "k: contraction fast"});
+        std::vector<std::string>{"k: contraction fast", "k: precision half", "k: precision double"});
   Kernel kernel = kernelNamed("k", 1);
   kernel.hasFastFunctions = true;
   kernel.tables = {"f"};
   CHECK(textsOf(choicesOf(processWith({kernel}, false)).others) ==
-        std::vector<std::string>{"k: precision half", "k: precision extended", "k: precision double",
-                                 "k: contraction fast", "k: intrinsics fast", "k: tables off"});
+        std::vector<std::string>{"k: contraction fast", "k: intrinsics fast", "k: tables off",
+                                 "k: precision half", "k: precision extended", "k: precision double"});
 }
 
 TEST_CASE("a value that only some calls have is tried for all") {
@@ -103,6 +103,38 @@ TEST_CASE(
   CHECK(has(choices.untried, "small: takes 0.1 % of the kernels' time"));
   REQUIRE(choices.raised.size() == 3);
   CHECK(choices.raised.front().of == "small");
+}
+
+TEST_CASE("what is rarely faster is tried after all else") {
+  const auto orderOn = [](bool isNative) {
+    Process process = processWith({kernelNamed("middle", 0.3), kernelNamed("large", 0.7)}, isNative);
+    process.streams = {{"u", "single", 1, 100}};
+    const std::vector<std::string> texts = textsOf(choicesOf(process).others);
+    return std::vector<std::string>(texts.begin(), texts.begin() + 4);
+  };
+  CHECK(orderOn(false) == std::vector<std::string>{"u: storage half", "large: contraction fast",
+                                                   "middle: contraction fast", "large: precision half"});
+  CHECK(orderOn(true) == std::vector<std::string>{"large: contraction fast", "middle: contraction fast",
+                                                  "u: storage half", "large: precision half"});
+}
+
+TEST_CASE("kernels and streams of wide numbers become floats together") {
+  Kernel wide = kernelNamed("wide", 1), narrow = kernelNamed("narrow", 1);
+  wide.used.front() = "precision double";
+  Process process = processWith({wide, narrow});
+  process.streams = {{"u", "double", 1, 100}, {"v", "single", 1, 100}};
+  CHECK(textsOf(choicesOf(process).lowered) ==
+        std::vector<std::string>{"wide: precision single", "u: storage single"});
+}
+
+TEST_CASE("small streams are left alone for speed") {
+  Process process = processWith({kernelNamed("k", 1)});
+  process.streams = {{"", "single", 1, 9}, {"u", "single", 1, 991}};
+  const Choices choices = choicesOf(process);
+  CHECK_FALSE(has(textsOf(choices.others), "streams without a name: storage half"));
+  CHECK(has(textsOf(choices.others), "u: storage half"));
+  CHECK(has(choices.untried, "streams without a name: 0.9 % of the bytes of all streams"));
+  CHECK(has(textsOf(choices.raised), "streams without a name: storage double"));
 }
 
 TEST_CASE("streams are stored in halves for speed, and in doubles for exactness") {

@@ -2,7 +2,8 @@
 //
 // The search for the cheapest setting that is exact enough.
 //
-// Where the program is exact enough as it is (searchCheaper): each choice is tried alone; those that save time and hold the
+// Where the program is exact enough as it is (searchCheaper): if it computes in wide numbers, all of them become floats together, but for
+// the fewest that must stay wide, as delta debugging finds them. Then each choice is tried alone; those that save time and hold the
 // tolerance are added up, the most time saved per error first, halves of the list at a time where the whole does not hold. In the end,
 // each is left out once, which shows what it saves, and drops it if that is nothing.
 //

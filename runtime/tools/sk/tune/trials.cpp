@@ -119,11 +119,12 @@ void Trials::save() const {
 void Trials::runOnce(Trial& trial) {
   const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   progress_.show(std::min(1.0, spent / options_.budget.count()));
-  if (spent + longest_ > options_.budget.count()) throw OutOfBudget();
+  if (hasBudget_ && spent + longest_ > options_.budget.count()) throw OutOfBudget();
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "trial.toml").string();
   std::ofstream(file) << fileOf(trial.setting);
-  const RunResult result = application_.run({.environment = {{"SK_CONFIG", file}}, .limit = options_.limit});
+  const RunResult result = application_.run(
+      {.environment = {{"SK_CONFIG", file}}, .measures = options_.measures, .limit = options_.limit});
   ++runs_;
   if (!result.isTooSlow) longest_ = std::max(longest_, result.wall);
   if (!result.failure.empty()) {

@@ -48,6 +48,7 @@ class Trials {
     std::chrono::duration<double> budget{300};
     std::chrono::duration<double> limit{3600};  ///< of one run
     bool allowsDecisions = false;
+    bool measures = false;  ///< wait around each kernel, because the devices queue calls
     std::string stateFile = {};  ///< empty: nothing is kept
     std::string key = {};  ///< what all trials depend on
   };
@@ -71,9 +72,14 @@ class Trials {
   /// Runs a setting until it has been timed this often. Throws OutOfBudget.
   void time(const Setting& setting, std::size_t count);
 
+  /// Runs are no longer refused: what the search has found is compared with the program as it is, even if the budget has ended the search.
+  void liftBudget() { hasBudget_ = false; }
+
   /// All trials, in the order in which they ran first.
   std::vector<const Trial*> all() const;
   int runs() const { return runs_; }
+  /// Whether the program waits around each kernel, because its devices queue calls.
+  bool measures() const { return options_.measures; }
   /// The configuration file of a setting.
   std::string fileOf(const Setting& setting, const FileTexts& texts = {}) const {
     return base_.text(setting, facts_, texts);
@@ -93,6 +99,7 @@ class Trials {
   std::map<Setting, Trial> trials_;
   std::vector<Setting> order_;
   int runs_ = 0;
+  bool hasBudget_ = true;
   double longest_ = 0;  ///< seconds of a run
 };
 

@@ -189,16 +189,18 @@ void search(Trials& trials, const Choices& choices, Found& found, Report& report
     report.wasRaised = !trials.holds(trials.run({}));
     if (report.wasRaised) searchExact(trials, choices, found);
     if (found.isReached && found.isComplete) searchCheaper(trials, choices, found);
-    if (!found.isReached || found.setting.empty()) return finishSearch(trials, found, report);
+  } catch (const OutOfBudget&) {
+    found.isComplete = false;
+  }
+  trials.liftBudget();
+  if (found.isReached && !found.setting.empty()) {
+    trials.run(found.setting);
     report.ratio = trials.compare({}, found.setting, 5).ratio;
     if (!report.wasRaised && report.ratio > 1 - leastGain / 2) {  // what its parts saved was chance
       found.setting.clear();
       found.evidence.clear();
       report.ratio = 1;
     }
-  } catch (const OutOfBudget&) {
-    found.isComplete = false;
-    report.ratio = trials.run(found.setting).median() / std::max(trials.run({}).median(), 1e-9);
   }
   finishSearch(trials, found, report);
 }
@@ -244,6 +246,7 @@ void tune(const Options& options) {
                 {.budget = std::chrono::duration<double>(budget),
                  .limit = std::chrono::duration<double>(10 + 10 * base.wall),
                  .allowsDecisions = options.allowsDecisions,
+                 .measures = base.queues(),
                  .stateFile = options.output + ".state",
                  .key = keyOf(options, judge, file, base.process)});
   if (options.continues) trials.load();
