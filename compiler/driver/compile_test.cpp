@@ -140,7 +140,7 @@ TEST_CASE("mistakes come back as messages, with the name that was given") {
   CHECK(contains(unknown.messages, "'x.sk' has no kernel 'thrice'; it has twice"));
   Options ranges;
   ranges.emit = Emit::Bounds;
-  ranges.bounds.ranges.push_back(bounds::parseRange("y.z=0:1"));
+  ranges.bounds.ranges.push_back({"y.z", 0, 1});
   CHECK(contains(compileText(ranges, "x.sk", program).messages, "'x.sk' has no parameter 'y.z'; it has "));
 }
 
