@@ -5,8 +5,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 const load = (name) => import(`${process.env.SK_WEB}/streamkernel/shadow/${name}.js`);
-const [{ compare, isJump }, { Records }, { Series, Spread }, { Shares, writtenByHost }, { growthOf, verdictsOf }, { hexOf, reportOf }, { tableOf }, { checkedOptions, matchesAny }] =
-  await Promise.all(['errors', 'records', 'series', 'shares', 'verdicts', 'report', 'table', 'shadow'].map(load));
+const [{ compare, isJump }, { Records }, { Series, Spread }, { Shares, writtenByHost }, { verdictsOf }, { hexOf, reportOf }, { tableOf }, { checkedOptions, matchesAny }, { CallRecorder, haveOtherSigns }, { sampleOf }] =
+  await Promise.all(['errors', 'records', 'series', 'shares', 'verdicts', 'report', 'table', 'shadow', 'record_call', 'columns'].map(load));
 
 const columns = (...all) => all.map((one) => Float64Array.from(one));
 const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-12 * Math.abs(b), `${a}, not ${b}`);
@@ -26,6 +26,23 @@ test('own, inherited and total errors are relative to the reference', () => {
 test('values that are not finite are counted, and not summed', () => {
   const errors = compare([true], columns([NaN, Infinity, 1, NaN]), columns([1, 1, NaN, NaN]), columns([1, 1, 1, 1]));
   assert.deepEqual([errors.nans.count, errors.newNans.count, errors.newNans.first, errors.infinities.count, errors.newInfinities.first, errors.reals], [2, 1, 0, 1, 1, 0]);
+});
+
+test('no digit is right of numbers that are lost, whoever has lost them', () => {
+  const own = compare([true], columns([1, Infinity, NaN]), columns([1, 2, NaN]), columns([1, 2, 3]));
+  assert.deepEqual([own.lost, own.relativeTotal(), own.reportedTotal(), own.reportedOwn(), own.ownShare()], [2, 0, Infinity, Infinity, 1]);
+  const inherited = compare([true], columns([1.5, NaN]), columns([1, NaN]), columns([1, 2]));
+  assert.deepEqual([inherited.lost, inherited.reportedTotal(), inherited.reportedOwn(), inherited.ownShare()], [1, Infinity, 0.5, 1]);
+  const meant = compare([true], columns([1, -Infinity]), columns([1, -Infinity]), columns([1, -Infinity]));
+  assert.deepEqual([meant.lost, meant.reportedTotal(), meant.reportedOwn(), meant.ownShare()], [0, 0, 0, 0]);
+  const all = compare([true], columns([Infinity, Infinity]), columns([2, 3]), columns([2, 3]));
+  assert.deepEqual([all.reals, all.absoluteTotal(), all.reportedTotal()], [0, 0, Infinity]);
+});
+
+test('errors of numbers below the smallest normal float are relative to that', () => {
+  const least = 2 ** -126;
+  close(compare([true], columns([0, 0]), null, columns([least / 8, least / 8])).relativeTotal(), 1 / 8);
+  close(compare([true], columns([0, 0]), null, columns([8 * least, 8 * least])).relativeTotal(), 1);
 });
 
 test('integers that differ are decisions', () => {
@@ -56,24 +73,55 @@ test('shares add up to 1 without those that are next to nothing', () => {
 
 test('points of a series are thinned out, and keep the largest errors', () => {
   const series = new Series();
-  for (let call = 1; call <= 5000; ++call) series.add({ call, own: call === 3210 ? 9 : 1, inherited: 0, total: 1, absolute: 1 });
+  for (let call = 1; call <= 5000; ++call) series.add({ call, own: call === 3210 ? 9 : 1, inherited: 0, total: 1, absolute: 1, isTurned: call === 1234 });
   assert.ok(series.points.length <= 1024 && series.points.length >= 512);
   assert.equal(Math.max(...series.points.map(({ own }) => own)), 9);
   assert.equal(series.points[series.points.length - 1].call, 5000);
+  assert.equal(series.points.filter(({ isTurned }) => isTurned).length, 1);
   const spread = new Spread();
   for (const error of [0, 1e-8, 1e-4, Infinity]) spread.add(error);
   close(spread.typical, 1e-6);
 });
 
-test('an error that grows exponentially is told from one that adds up', () => {
-  const series = (of) => {
-    const all = new Series();
-    for (let call = 1; call <= 60; ++call) all.add({ call, own: 0, inherited: 0, total: 1e-9, absolute: of(call) });
-    return all;
-  };
-  close(growthOf(series((n) => 1e-8 * 1.5 ** n)), 1.5);
-  assert.equal(growthOf(series((n) => 1e-8 * n)), 1);
-  assert.equal(growthOf(series(() => 1e-8)), 1);
+test('signs that have mostly changed are seen by some of many elements', () => {
+  const body = { name: 'Body', fields: [{ scalar: 'int', width: 1 }, { scalar: 'float', width: 2 }] };
+  const wave = (sign) => sampleOf(body, columns([], Array.from({ length: 1000 }, (_, i) => sign * Math.cos(i)), []));
+  assert.deepEqual([wave(1).length, wave(1)[2]], [334, Math.cos(6)]);
+  assert.deepEqual([haveOtherSigns(wave(1), wave(-2)), haveOtherSigns(wave(1), wave(2)), haveOtherSigns(wave(1), wave(0))], [true, false, false]);
+  assert.equal(sampleOf({ name: 'int', fields: [{ scalar: 'int', width: 1 }] }, columns([1, 2])).length, 0);
+});
+
+/** What is recorded of the value of a reduce: each call's device, own and reference. */
+async function values(...calls) {
+  const all = new Records();
+  all.calls = calls.length;
+  const kernel = all.kernel('sum');
+  const element = { name: 'float', fields: [{ scalar: 'float', width: 1 }] };
+  for (const [number, call] of calls.entries()) {
+    const arrays = Promise.resolve(call.map((x) => columns([x])));
+    await new CallRecorder(all, number + 1, kernel, [], [], 1).record([{ parameter: { name: 's' }, element, of: null, counterpart: null, arrays }]);
+  }
+  return all;
+}
+
+test('a value is compared with the largest that the reduce has given', async () => {
+  const { results: [result] } = await values([1000, 1000, 1000], [0.5, 0.5, 0.25]);
+  assert.deepEqual([result.reads, result.numbers, result.scale, result.exception], [2, 1, 1000, -1]);
+  close(result.largest, 2.5e-4);
+  close((await values([0.5, 0.5, 0.25])).results[0].largest, 1);
+});
+
+test('a value that is lost has no digit, and says where it comes from', async () => {
+  const all = await values([2, 2, 2], [Infinity, 3, 3]);
+  const { results: [result], kernels: [kernel] } = all;
+  assert.deepEqual([result.last, result.largest, result.notFinite, result.withoutValue, result.exception], [Infinity, Infinity, 1, 1, 0]);
+  assert.deepEqual([kernel.own.largest, kernel.total.largest, kernel.infinities], [Infinity, Infinity, 1]);
+  assert.deepEqual(kernel.output('s', 'float').points.points.map(({ total }) => total), [0, 1]);
+  const report = reportOf(all, { program: 'page', device: 'd', hasEnded: true, every: 1, kernels: ['*'], seconds: 1 });
+  const { error, digits, numbers, notFinite, withoutValue, exception } = report.results[0];
+  assert.deepEqual([error, digits, numbers, notFinite, withoutValue, exception], [{ largest: 'inf', last: 'inf' }, 0, 1, 1, 1, 0]);
+  assert.deepEqual(report.verdicts.map(({ kind }) => kind), ['infinity', 'error']);
+  assert.equal((await values([2, 2, 2])).results[0].exception, -1);
 });
 
 /** Records of a page with two kernels and a result whose error is mostly the second one's. */

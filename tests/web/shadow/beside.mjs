@@ -205,6 +205,57 @@ async function unstable(device) {
   expect('an error that grows with each call is found', found.verdicts.some(({ kind, kernel }) => kind === 'unstable' && kernel === 'logistic'), JSON.stringify(found.verdicts));
 }
 
+/** Steps of the heat equation that are too long: each multiplies the shortest wave by 1 - 4k, -2.6. */
+async function overshoots(device) {
+  const hill = (i) => (i % 7 === 3 ? 2 : 0.5);
+  const heat = async (name, calls, isInPlace, options) => {
+    const u = filled(device, [100], hill);
+    const v = isInPlace ? u : device.stream('float', [100]);
+    const { found } = await followed(name, device, async () => {
+      for (let i = 0; i < calls; i += 2) {
+        k.step(0.9, u, v);
+        k.step(0.9, v, u);
+      }
+      await u.read();
+    }, options);
+    return found;
+  };
+  const isUnstable = (verdict) => verdict?.kind === 'unstable' && verdict.kernel === 'step' && /factor of 2\.[4-6]\d* with each call/.test(verdict.text);
+  const steps = await heat('overshoots', 40, false);
+  expect('a step that is too long is unstable, though its solution grows as well', steps.verdicts.some(isUnstable), JSON.stringify(steps.verdicts));
+  const second = await heat('overshoots, every second', 40, true, { every: 2 });
+  expect('every second call shows that', second.kernels[0].followed === 20 && second.verdicts.some(isUnstable), JSON.stringify(second.verdicts));
+  const over = await heat('overflows', 120, false);
+  expect('an overflow that it leads to comes after it', isUnstable(over.verdicts[0]) && over.exceptions[0]?.kind === 'infinity', JSON.stringify([over.verdicts, over.exceptions[0]]));
+}
+
+async function grows(device) {
+  const x = filled(device, [64], (i) => 100 + i / 3);
+  const { found } = await followed('grows', device, async () => {
+    for (let i = 0; i < 200; ++i) k.accrue(0.05, x, x);
+    await x.read();
+  });
+  const growth = found.verdicts.at(-1);
+  expect('compound interest grows as it should', growth.kind === 'growth' && growth.kernel === 'accrue' && /factor of 1\.0[4-6]\d* /.test(growth.text), JSON.stringify(found.verdicts));
+  expect('which is not the first thing to say of results that are right', found.verdicts.length === 2 && found.results[0].digits > 5, JSON.stringify([found.verdicts, found.results]));
+}
+
+async function vanishes(device) {
+  const x = filled(device, [40], () => 1e-9);
+  const [r, s] = [device.stream('float', [40]), device.stream('float', [40])];
+  const { found, kernel } = await followed('vanishes', device, async () => {
+    k.vanish(x, r);
+    k.field.damp(2, r, s);
+    await s.read();
+  });
+  const [result] = found.results;
+  expect('a result that is infinite has no digit', result.error.largest === 'inf' && result.error.last === 'inf' && result.digits === 0, JSON.stringify(result));
+  expect('its numbers are counted', result.numbers === 40 && result.notFinite === 40 && result.withoutValue === 40, JSON.stringify(result));
+  expect('it says where they come from', found.exceptions[result.exception]?.kernel === 'vanish' && result.shares[0]?.kernel === 'vanish', JSON.stringify([result, found.exceptions]));
+  expect('so has the kernel', kernel('vanish').own.largest === 'inf' && kernel('vanish').digits === 0 && kernel('field::damp').own.largest === 0 && kernel('field::damp').total.largest === 'inf', JSON.stringify(found.kernels));
+  expect('the first verdict is of the infinity', found.verdicts[0].kind === 'infinity' && found.verdicts[0].kernel === 'vanish' && found.verdicts.some(({ kind }) => kind === 'error'), JSON.stringify(found.verdicts));
+}
+
 // ---- what is not followed -------------------------------------------------------------------------
 
 async function named(device) {
@@ -272,7 +323,7 @@ const unhandled = [];
 addEventListener('unhandledrejection', ({ reason }) => unhandled.push(String(reason)));
 try {
   const device = await Device.create();
-  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, named, choices, ends]) {
+  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, overshoots, grows, vanishes, named, choices, ends]) {
     try {
       await run(device);
       const error = device.context.getError();

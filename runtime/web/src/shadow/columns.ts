@@ -79,6 +79,14 @@ export function readColumns(of: Elements): Promise<Columns> {
   );
 }
 
+/** The first components that are real numbers of some hundred elements, evenly spread; nothing if there are no real numbers. */
+export function sampleOf(element: Element, columns: Columns): Float64Array {
+  const most = 256;
+  const all = columns[scalarsOf(element).findIndex(isReal)] ?? new Float64Array(0);
+  const step = Math.max(1, Math.floor(all.length / most));
+  return Float64Array.from({ length: Math.ceil(all.length / step) }, (_, i) => all[i * step]!);
+}
+
 /** Asks for one element, by its number in a stream: the value of each component. */
 export async function readElement(stream: AnyStream, number: number): Promise<number[]> {
   const { device, element, layout, planes } = stream;

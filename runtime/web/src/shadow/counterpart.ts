@@ -29,6 +29,8 @@ export function noErrors(): StreamErrors {
 export class Counterpart {
   /** Those of the calls that have been compared: comparisons come later than calls, and in their order. */
   errors = noErrors();
+  /** Of the device's elements, if a comparison has asked for them since they were written: sampleOf(). */
+  sample: Promise<Float64Array> | null = null;
   readonly record: StreamRecord;
   private held: AnyStream | null = null;
   private isFresh = false;
@@ -68,12 +70,14 @@ export class Counterpart {
 
   /** The device's elements are others now. */
   leave(isOfPage: boolean): void {
+    this.sample = null;
     this.isOfPage = isOfPage;
     this.isFresh = false;
   }
 
   /** Takes over the device's elements of a view, if the reference has the others. */
   takePart(of: View<any, number>): void {
+    this.sample = null;
     const held = this.elements();
     if (held === null) return;
     const whole = widened(this.stream, held.element);

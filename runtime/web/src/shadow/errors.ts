@@ -18,6 +18,9 @@ export interface Worst {
   component: number;
 }
 
+/** The smallest normal float: below it, floats have fewer digits. */
+const leastNormal = 2 ** -126;
+
 const nothing = (): Found => ({ count: 0, first: -1, component: 0 });
 const noWorst = (): Worst => ({ error: 0, element: -1, component: 0 });
 
@@ -48,6 +51,8 @@ export class OutputErrors {
   /** Of the device, where the reference is finite with the device's inputs. */
   readonly newNans = nothing();
   readonly newInfinities = nothing();
+  /** Components that are not finite on the device where the reference's are. */
+  lost = 0;
   integers = 0;
   /** Integers that differ from o, and from r. */
   readonly ownDecisions = nothing();
@@ -66,6 +71,14 @@ export class OutputErrors {
     return this.relative(this.total2);
   }
 
+  /** Likewise, but infinite if components are not finite where the reference's are: no digit of them is right. */
+  reportedOwn(): number {
+    return this.hasNewExceptions() ? Infinity : this.relativeOwn();
+  }
+  reportedTotal(): number {
+    return this.lost > 0 ? Infinity : this.relativeTotal();
+  }
+
   /** The relative error of integers, but at most the share that differs: an integer may be a number or a name. */
   relativeIntegers(): number {
     if (this.decisions.count === 0) return 0;
@@ -75,6 +88,7 @@ export class OutputErrors {
 
   /** The share of the total error that the call added itself, by projection on the total: 0 to 1. */
   ownShare(): number {
+    if (this.hasNewExceptions()) return 1;
     return this.total2 > 0 ? Math.min(1, Math.max(0, this.ownInTotal / this.total2)) : 0;
   }
 
@@ -83,9 +97,19 @@ export class OutputErrors {
     return this.reals > 0 ? Math.sqrt(this.reference2 / this.reals) : 0;
   }
 
+  /** The root mean square of the total error; 0 if no components are finite. */
+  absoluteTotal(): number {
+    return this.reals > 0 ? Math.sqrt(this.total2 / this.reals) : 0;
+  }
+
+  private hasNewExceptions(): boolean {
+    return this.newNans.count > 0 || this.newInfinities.count > 0;
+  }
+
   private relative(squares: number): number {
     if (squares === 0) return 0;
-    return this.reference2 > 0 ? Math.sqrt(squares / this.reference2) : 1; // else nothing of the result is right
+    if (!(this.reference2 > 0)) return 1; // nothing of the result is right
+    return Math.sqrt(squares / Math.max(this.reference2, this.reals * leastNormal ** 2));
   }
 }
 
@@ -107,8 +131,9 @@ export function compare(areReal: readonly boolean[], device: Columns, own: Colum
 }
 
 /** One element, whose error is not finite. */
-function addExceptional(errors: OutputErrors, component: number, i: number, d: number, o: number): void {
+function addExceptional(errors: OutputErrors, component: number, i: number, d: number, o: number, r: number): void {
   if (Number.isFinite(d)) return;
+  if (Number.isFinite(r)) ++errors.lost;
   const isNan = Number.isNaN(d);
   note(isNan ? errors.nans : errors.infinities, i, component);
   if (Number.isFinite(o)) note(isNan ? errors.newNans : errors.newInfinities, i, component);
@@ -125,7 +150,7 @@ function addReals(errors: OutputErrors, component: number, ds: Float64Array, os:
     const own = d - o;
     const total = d - r;
     if (!(Math.abs(own) < Infinity && Math.abs(total) < Infinity)) {
-      addExceptional(errors, component, i, d, o);
+      addExceptional(errors, component, i, d, o, r);
       continue;
     }
     const inherited = o - r;

@@ -10,11 +10,11 @@ import type { Called } from '../observer.js';
 import type { GivenDomain } from '../over.js';
 import { Fitted, Stream, View, viewOf } from '../stream.js';
 import type { KernelOptions, ScanOptions } from '../types.js';
-import { bytesOf, readColumns, type AnyStream, type Elements } from './columns.js';
-import { placedOn } from './counterpart.js';
+import { bytesOf, readColumns, sampleOf, type AnyStream, type Elements } from './columns.js';
+import { placedOn, type Counterpart } from './counterpart.js';
 import type { Columns } from './errors.js';
 import type { Follower } from './follower.js';
-import { CallRecorder, type ReadOfCall, type WrittenByCall } from './record_call.js';
+import { CallRecorder, isAlike, type ReadOfCall, type WrittenByCall } from './record_call.js';
 import { widened } from './widen.js';
 
 type Callable = CallableKernel | CallableReduction;
@@ -115,6 +115,7 @@ export class FollowedCall {
       return this.end();
     }
     const { records } = this.follower;
+    for (const { of } of this.outputs) if (of !== null) this.follower.counterpartOf(viewOf(of).stream).sample = null;
     const start = performance.now();
     try {
       const outputs = this.runOnReference();
@@ -166,7 +167,9 @@ export class FollowedCall {
       counterpart?.taken(element);
       const kept = isValue ? this.values : this.inputs;
       if ((isValue || this.isMeasured) && !kept.has(stream)) kept.set(stream, this.temporary(widened(stream, element)));
-      this.reads.push({ index, isValue, name, of, counterpart, device: kept.get(stream) ?? null });
+      const mayTurn = this.isMeasured && counterpart !== null && this.outputs.some((output) => output.of !== null && isAlike(of, output.of));
+      const sample = mayTurn ? sampleNow(of, counterpart) : null;
+      this.reads.push({ index, isValue, name, of, counterpart, device: kept.get(stream) ?? null, sample });
     });
     for (const { index, of } of this.outputs) {
       if (of !== null && of.size < viewOf(of).stream.size) this.follower.counterpartOf(viewOf(of).stream).taken(this.elementOf(index));
@@ -231,8 +234,10 @@ export class FollowedCall {
     let next = 0;
     const written = this.outputs.map(({ index, of }, k): WrittenByCall => {
       const device = of === null ? values[next++]! : readColumns(of);
+      const counterpart = of === null ? null : this.follower.counterpartOf(viewOf(of).stream);
+      if (counterpart !== null && of!.size === counterpart.stream.size) counterpart.sample = seen(device.then((columns) => sampleOf(counterpart.stream.element, columns)));
       return {
-        parameter: this.parameters[index]!, element: this.called.file.elements[this.parameters[index]!.element]!, of, counterpart: of === null ? null : this.follower.counterpartOf(viewOf(of).stream),
+        parameter: this.parameters[index]!, element: this.called.file.elements[this.parameters[index]!.element]!, of, counterpart,
         arrays: Promise.all([device, readColumns(own[k]!), readColumns(reference[k]!)]),
       };
     });
@@ -282,6 +287,18 @@ export class FollowedCall {
   private end(): void {
     for (const stream of this.temporaries.splice(0)) stream.dispose();
   }
+}
+
+/** A promise whose failure a comparison sees, if there is one. */
+function seen<T>(promise: Promise<T>): Promise<T> {
+  promise.catch(() => undefined);
+  return promise;
+}
+
+/** Some of the device's elements as they are now, which are often what the call before has written. */
+function sampleNow(of: Elements, { sample, stream }: Counterpart): Promise<Float64Array> {
+  const isWhole = of.size === stream.size;
+  return (isWhole ? sample : null) ?? seen(readColumns(of).then((columns) => sampleOf(stream.element, columns)));
 }
 
 /** What a declaration chooses. */

@@ -77,9 +77,13 @@ export class Follower implements Observer {
         const result = this.records.result(counterpart.record.name, false);
         ++result.reads;
         result.elements = of.size;
-        result.last = Math.max(errors.relativeTotal(), errors.relativeIntegers());
+        result.numbers = of.size * areReal.filter(Boolean).length;
+        result.last = Math.max(errors.reportedTotal(), errors.relativeIntegers());
         result.largest = Math.max(result.largest, result.last);
         result.differs += errors.decisions.count;
+        result.notFinite = errors.newNans.count + errors.newInfinities.count;
+        result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
+        result.exception = counterpart.errors.exception;
         result.shares = counterpart.errors.shares.copied();
       });
     });
@@ -107,6 +111,7 @@ export class Follower implements Observer {
         return;
       }
       const other = this.counterpartOf(target.stream);
+      other.sample = null;
       const room = isWhole && target.stream !== source.stream ? other.room(held.element) : other.taken(held.element);
       (placedOn(from, held) as AnyStream).copyTo(placedOn(to, room) as AnyStream);
       if (isWhole) this.compareLater(0, () => void (other.errors = { ...counterpart.errors, shares: counterpart.errors.shares.copied() }));

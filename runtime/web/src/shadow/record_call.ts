@@ -2,10 +2,10 @@
 //
 // Records how far the outputs of a call are from the reference: errors, whose they are, exceptional values, decisions
 // (runtime/src/shadow/call_record.cpp).
-import { numbersOf } from '../elements.js';
+import { isSameElement, numbersOf } from '../elements.js';
 import type { Element, Parameter } from '../generated.js';
 import { viewOf } from '../stream.js';
-import { componentNames, indexOf, inputNumber, isReal, readColumns, readElement, scalarsOf, type AnyStream, type Elements } from './columns.js';
+import { componentNames, indexOf, inputNumber, isReal, readColumns, readElement, sampleOf, scalarsOf, type AnyStream, type Elements } from './columns.js';
 import { noErrors, type Counterpart, type StreamErrors } from './counterpart.js';
 import { compare, isJump, type Columns, type Found, type OutputErrors } from './errors.js';
 import type { ElementRecord, ExceptionRecord, Records, Value } from './records.js';
@@ -18,6 +18,8 @@ export interface ReadOfCall {
   readonly counterpart: Counterpart | null;
   /** The whole stream of the elements before the call, in doubles. */
   readonly device: AnyStream | null;
+  /** Of the device's elements before the call: sampleOf(). Null unless an output is of the same shape and type. */
+  readonly sample: Promise<Float64Array> | null;
 }
 
 export interface WrittenByCall {
@@ -30,12 +32,24 @@ export interface WrittenByCall {
   readonly arrays: Promise<readonly [Columns, Columns, Columns]>;
 }
 
+/** Whether elements are of the same shape and type, so that a call may have computed some from the others, one by one. */
+export function isAlike(a: Elements, b: Elements): boolean {
+  return isSameElement(viewOf(a).stream.element, viewOf(b).stream.element) && a.shape.length === b.shape.length && a.shape.every((extent, d) => extent === b.shape[d]);
+}
+
+/** Whether numbers have mostly other signs than others have. */
+export function haveOtherSigns(a: Float64Array, b: Float64Array): boolean {
+  return a.reduce((sum, x, i) => sum + x * b[i]!, 0) < 0;
+}
+
 const mostRecords = 256;
 const longestPath = 32;
 
 export class CallRecorder {
   /** What was known of the inputs when the call was made. */
   private inputErrors: readonly StreamErrors[] = [];
+  /** The record of the NaN or infinity that the output that was recorded last has; -1 if there is none. */
+  private exception = -1;
 
   /** `promised`: how many values the call promises. */
   constructor(
@@ -71,12 +85,12 @@ export class CallRecorder {
     const { name } = written.parameter;
     const after = this.errorsAfter(written, errors);
     const output = record.output(name, written.element.name);
-    if (errors.reals > 0) {
-      const point = { call: number, own: errors.relativeOwn(), inherited: errors.relativeInherited(), total: errors.relativeTotal(), absolute: Math.sqrt(errors.total2 / errors.reals) };
-      record.own.add(point.own);
-      record.inherited.add(point.inherited);
-      record.total.add(point.total);
-      output.points.add(point);
+    if (errors.reals > 0 || errors.lost > 0) {
+      const [own, inherited, isTurned] = [errors.relativeOwn(), errors.relativeInherited(), await this.turns(written, arrays[0])];
+      record.own.add(errors.reportedOwn());
+      record.inherited.add(inherited);
+      record.total.add(errors.reportedTotal());
+      output.points.add({ call: number, own, inherited, total: after.relative, absolute: errors.absoluteTotal(), isTurned });
       const worst = errors.own.error / (errors.scale() || 1);
       if (errors.own.element >= 0 && worst > record.worstError) {
         record.worstError = worst;
@@ -85,31 +99,45 @@ export class CallRecorder {
     }
     if (written.counterpart !== null) {
       written.counterpart.errors = after;
-      written.counterpart.record.points.add({ call: number, own: 0, inherited: 0, total: after.relative, absolute: 0 });
+      written.counterpart.record.points.add({ call: number, own: 0, inherited: 0, total: after.relative, absolute: 0, isTurned: false });
     }
+    this.exception = -1;
     await this.recordExceptions(written, 'nan', errors.nans, errors.newNans, arrays);
     await this.recordExceptions(written, 'infinity', errors.infinities, errors.newInfinities, arrays);
     await this.recordDecisions(written, errors, arrays);
-    if (written.of === null) this.recordValue(name, errors, after);
+    if (written.of === null) this.recordValue(written, errors, after);
+  }
+
+  /** Whether the output has mostly the other sign than an input of its shape, by some of their elements. */
+  private async turns({ of, element }: WrittenByCall, device: Columns): Promise<boolean> {
+    if (of === null) return false;
+    const samples = await Promise.all(this.reads.filter((read) => read.sample !== null && isAlike(read.of, of)).map(({ sample }) => sample!));
+    return samples.some((sample) => haveOtherSigns(sample, sampleOf(element, device)));
   }
 
   /** A value that a reduce has promised is read by that. */
-  private recordValue(name: string, errors: OutputErrors, after: StreamErrors): void {
+  private recordValue({ parameter: { name }, element }: WrittenByCall, errors: OutputErrors, after: StreamErrors): void {
     const { records } = this;
     const kernel = records.kernels[this.kernel]!;
     const result = records.result(this.promised === 1 ? kernel.name : `${name} of ${kernel.name}`, true);
     ++result.reads;
     result.elements = 1;
-    result.last = after.relative;
-    result.largest = Math.max(result.largest, after.relative);
+    result.numbers = scalarsOf(element).filter(isReal).length;
+    result.exception = this.exception;
+    result.scale = Math.max(result.scale, errors.scale());
+    result.last = result.scale > 0 && errors.reals > 0 ? (after.relative * errors.scale()) / result.scale : after.relative;
+    if (errors.lost > 0) result.last = Infinity;
+    result.largest = Math.max(result.largest, result.last);
     result.differs += errors.decisions.count;
+    result.notFinite = errors.newNans.count + errors.newInfinities.count;
+    result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
     result.shares = after.shares;
   }
 
   /** What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had. */
   private errorsAfter(written: WrittenByCall, errors: OutputErrors): StreamErrors {
     let own = errors.ownShare();
-    let relative = errors.relativeTotal();
+    let relative = errors.lost > 0 ? Math.max(errors.relativeTotal(), 1) : errors.relativeTotal();
     if (errors.relativeIntegers() > relative) {
       relative = errors.relativeIntegers();
       own = Math.min(1, errors.ownDecisions.count / errors.decisions.count);
@@ -154,6 +182,7 @@ export class CallRecorder {
     if (kind === 'nan') record.nans += added.count;
     else record.infinities += added.count;
     const follow = (exception: number) => {
+      this.exception = exception;
       if (written.counterpart !== null) written.counterpart.errors = { ...written.counterpart.errors, exception };
     };
     for (const { exception } of isNew ? [] : this.inputErrors) {
@@ -168,7 +197,8 @@ export class CallRecorder {
     if (isKnown || records.exceptions.length >= mostRecords || (!isNew && (await this.isRead(kind)))) return;
     const shown = isNew ? added : all;
     const first = await this.elementOf(written, shown.first, shown.component, arrays);
-    follow(records.exceptions.push({ kind, kernel, elements: shown.count, isInReference: !isNew, first, path: [] }) - 1);
+    const last = records.exceptions.push({ kind, kernel, elements: shown.count, isInReference: !isNew, first, path: [] }) - 1;
+    if (isNew || this.exception < 0) follow(last); // infinity minus infinity is NaN: it comes from where the infinity does
   }
 
   /** Whether the call has read such a value, which the page may have written. */

@@ -72,9 +72,20 @@ export interface ResultRecord {
   readonly isValue: boolean;
   reads: number;
   elements: number;
+  /** Relative errors of the reads; infinite if nothing is right where the reference has numbers. */
   largest: number;
   last: number;
+  /** Of a value: the largest of the reads, since a sum may be 0 by chance. */
+  scale: number;
   differs: number;
+  /** Real components of the last read; 0 if it has none. */
+  numbers: number;
+  /** Of the last read: not finite where the reference's are. */
+  notFinite: number;
+  /** Of a read: NaN or infinite, whatever the reference has; the most of all reads. */
+  withoutValue: number;
+  /** The number of the record of the NaN or infinity that the last read's come from; -1 if there is none. */
+  exception: number;
   shares: Shares;
 }
 
@@ -123,7 +134,7 @@ export class Records {
   result(name: string, isValue: boolean): ResultRecord {
     let found = this.results.find((result) => result.name === name && result.isValue === isValue);
     if (found === undefined) {
-      this.results.push((found = { name, isValue, reads: 0, elements: 0, largest: 0, last: 0, differs: 0, shares: new Shares() }));
+      this.results.push((found = { name, isValue, reads: 0, elements: 0, largest: 0, last: 0, scale: 0, differs: 0, numbers: 0, notFinite: 0, withoutValue: 0, exception: -1, shares: new Shares() }));
     }
     return found;
   }

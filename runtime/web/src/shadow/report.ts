@@ -71,6 +71,14 @@ export interface ReportedResult {
   readonly error: { readonly largest: ReportNumber; readonly last: ReportNumber };
   readonly digits: number;
   readonly differs: number;
+  /** Real numbers of the last read; 0 if it had none. */
+  readonly numbers: number;
+  /** Of the last read: NaN or infinite where the reference has numbers. */
+  readonly notFinite: number;
+  /** NaN or infinite, whatever the reference has: the most of one read. */
+  readonly withoutValue: number;
+  /** The number, in `exceptions`, of the record that tells where the last read's come from. */
+  readonly exception: number | null;
   readonly shares: readonly { readonly kernel: string; readonly share: ReportNumber }[];
 }
 
@@ -169,9 +177,11 @@ function stream({ name, type, shape, resyncs, points }: StreamRecord): FollowedS
   return { name, type, shape, resyncs, points: points.points.map(({ call, total }) => [call, number(total)] as const) };
 }
 
-function result(records: Records, { name, isValue, reads, elements, largest, last, differs, shares }: ResultRecord): ReportedResult {
+function result(records: Records, record: ResultRecord): ReportedResult {
+  const { name, isValue, reads, elements, largest, last, differs, numbers, notFinite, withoutValue, exception, shares } = record;
   return {
     name, kind: isValue ? 'value' : 'read', reads, elements, error: { largest: number(largest), last: number(last) }, digits: digits(largest), differs,
+    numbers, notFinite, withoutValue, exception: exception < 0 ? null : exception,
     shares: shares.entries().map(([kernel, share]) => ({ kernel: records.nameOf(kernel), share: number(share) })),
   };
 }

@@ -29,13 +29,15 @@ export interface Point {
   readonly total: number;
   /** The root mean square of the total error. */
   readonly absolute: number;
+  /** The call has mostly changed the signs of what it read. */
+  readonly isTurned: boolean;
 }
 
 /** The larger errors of two calls, of which the second comes later. */
 function largest(a: Point, b: Point): Point {
   return {
     call: b.call, own: Math.max(a.own, b.own), inherited: Math.max(a.inherited, b.inherited), total: Math.max(a.total, b.total),
-    absolute: Math.max(a.absolute, b.absolute),
+    absolute: Math.max(a.absolute, b.absolute), isTurned: a.isTurned || b.isTurned,
   };
 }
 

@@ -2,10 +2,10 @@
 //
 // Concludes from the records of a page which kernel is to blame for what: runtime/src/shadow/report.cpp. No GL: Node tests it.
 import type { DecisionRecord, ExceptionRecord, Records, ResultRecord } from './records.js';
-import type { Series } from './series.js';
+import type { Point, Series } from './series.js';
 
 export interface Verdict {
-  readonly kind: 'nan' | 'infinity' | 'decision' | 'unstable' | 'error' | 'fine' | 'nothing';
+  readonly kind: 'nan' | 'infinity' | 'decision' | 'unstable' | 'growth' | 'error' | 'fine' | 'nothing';
   readonly kernel: string;
   readonly call: number;
   readonly text: string;
@@ -62,45 +62,98 @@ function isGrave(result: ResultRecord | undefined, limit: number): boolean {
   return result !== undefined && (result.largest > limit || result.differs > 0);
 }
 
+/** How the error of an output grows from call to call, if it does so exponentially and not as rounding errors add up. */
+export interface Growth {
+  /** With each call of the page; 1 if it does not. */
+  readonly factor: number;
+  /** Of the page, over which it grew so. */
+  readonly calls: number;
+  /** What is computed grows as fast, and keeps its sign. */
+  readonly isOfSolution: boolean;
+}
+
+const noGrowth: Growth = { factor: 1, calls: 0, isOfSolution: false };
+
 /**
- * The factor by which an error grows with each call if it grows exponentially, not as rounding errors add up; else 1. It is the absolute
- * error: where a step is unstable, the exact values grow, too. A growth that has ended because nothing is right any more counts up to
- * there.
+ * The points of a series until nothing is right any more. Absolute errors say how errors grow: where a step is unstable, the exact values
+ * may grow, too.
  */
-export function growthOf(series: Series): number {
-  const [lost, much, steady, least, quarters] = [0.05, 100, 0.75, 24, 4];
-  const end = series.points.findIndex(({ total, absolute }) => total > lost || !Number.isFinite(absolute));
-  const points = series.points.slice(0, end < 0 ? undefined : end).filter(({ absolute }) => absolute > 0);
-  if (points.length < least) return 1;
+function beforeLoss({ points }: Series): Point[] {
+  const lost = 0.05;
+  const end = points.findIndex(({ total, absolute }) => total > lost || !Number.isFinite(absolute));
+  return points.slice(0, end < 0 ? undefined : end).filter(({ absolute }) => absolute > 0);
+}
+
+/** A step that is too long overshoots: the largest waves change their signs with each call. A model that grows so is a rarity. */
+function overshoots(points: readonly Point[]): boolean {
+  return 2 * points.filter(({ isTurned }) => isTurned).length > points.length;
+}
+
+function growthOver(points: readonly Point[]): Growth {
+  const [from, to] = [points[0]!, points[points.length - 1]!];
+  const error = Math.log(to.absolute / from.absolute);
+  const relative = from.total > 0 && to.total > 0 ? Math.log(to.total / from.total) : error;
+  const calls = to.call - from.call;
+  const most = 0.7;
+  return { factor: Math.exp(error / calls), calls, isOfSolution: error - relative > most * error && !overshoots(points) };
+}
+
+/** Many points: each quarter of them adds as many digits to the error as the one before. */
+function longGrowth(points: readonly Point[]): Growth {
+  const [much, steady, quarters] = [100, 0.75, 4];
   const at = (q: number) => Math.floor(((points.length - 1) * q) / quarters);
-  const steps = [1, 2, 3, 4].map((q) => Math.log(points[at(q)]!.absolute) - Math.log(points[at(q - 1)]!.absolute)) as [number, number, number, number];
+  const [, second, third, fourth] = [1, 2, 3, 4].map((q) => Math.log(points[at(q)]!.absolute) - Math.log(points[at(q - 1)]!.absolute)) as [number, number, number, number];
   // Sums of rounding errors grow by a factor of 2 or less from the second quarter to the fourth.
-  const grown = steps[1] + steps[2] + steps[3];
-  if (grown < Math.log(much) || steps[2] < steady * steps[1] || steps[3] < steady * steps[2]) return 1;
-  return Math.exp(grown / (points[points.length - 1]!.call - points[at(1)]!.call));
+  if (second + third + fourth < Math.log(much) || third < steady * second || fourth < steady * third) return noGrowth;
+  return growthOver(points.slice(at(1)));
+}
+
+/** Few points, since nothing is right after them: each has a larger error than the one before, by far, and other signs. */
+function shortGrowth(points: readonly Point[]): Growth {
+  const [much, far] = [100, 1.4];
+  const last = points.slice(Math.floor(points.length / 4));
+  if (last.some(({ absolute }, i) => i > 0 && absolute < far * last[i - 1]!.absolute)) return noGrowth;
+  if (last[last.length - 1]!.absolute < much * last[0]!.absolute) return noGrowth;
+  return overshoots(last) ? growthOver(last) : noGrowth;
+}
+
+export function growthOf(series: Series): Growth {
+  const [many, few] = [24, 4];
+  const points = beforeLoss(series);
+  if (points.length >= many) return longGrowth(points);
+  return points.length >= few ? shortGrowth(points) : noGrowth;
 }
 
 /** An instability shows in most of what the page computes over and over again. */
-function unstableVerdicts(records: Records): Verdict[] {
-  const often = 24;
-  let [fastest, growing, steady] = [1, 0, 0];
+function unstableVerdict(records: Records): Verdict | null {
+  const often = 4;
+  let [growing, steady] = [0, 0];
+  let fastest = noGrowth;
   let worst = null;
   for (const kernel of records.kernels) {
     if (kernel.amplification.count < often) continue;
     for (const { points } of kernel.outputs) {
       if (points.points.length === 0) continue;
       const growth = growthOf(points);
-      if (growth > 1) ++growing;
+      if (growth.factor > 1) ++growing;
       else ++steady;
-      if (growth <= fastest) continue;
+      if (growth.factor <= fastest.factor) continue;
       fastest = growth;
       worst = kernel;
     }
   }
-  if (worst === null || growing < steady) return [];
-  const perCall = short(fastest ** (records.calls / worst.calls), 4);
-  const text = `unstable time step: the error grows by a factor of ${perCall} with each call of ${worst.name}, for ${worst.calls} calls; or the model is chaotic`;
-  return [{ kind: 'unstable', kernel: worst.name, call: 0, text }];
+  if (worst === null || growing < steady) return null;
+  const others = records.calls / worst.calls;
+  const text = `the error grows by a factor of ${short(fastest.factor ** others, 4)} with each call of ${worst.name}, for ${(fastest.calls / others).toFixed(0)} calls`;
+  const verdict = { kernel: worst.name, call: 0 };
+  if (!fastest.isOfSolution) return { kind: 'unstable', ...verdict, text: `unstable time step: ${text}; or the model is chaotic` };
+  return { kind: 'growth', ...verdict, text: `${text}, and so does what it computes: an unstable time step, or a model that grows` };
+}
+
+/** Whether the first value that is not finite is an infinity, which growth may have led to. */
+function overflowsFirst({ exceptions }: Records): boolean {
+  const first = exceptions.reduce<ExceptionRecord | undefined>((earliest, each) => (earliest === undefined || each.first.call < earliest.first.call ? each : earliest), undefined);
+  return first?.kind === 'infinity';
 }
 
 function shareVerdicts(records: Records, result: ResultRecord): Verdict[] {
@@ -127,13 +180,18 @@ export function verdictsOf(records: Records): Verdict[] {
   const result = records.results.reduce<ResultRecord | undefined>((worst, each) => (worst === undefined || each.largest > worst.largest ? each : worst), undefined);
   const decisions = records.decisions.filter(({ isInherited }) => !isInherited).map((decision) => decisionVerdict(records, decision));
   const hasDecided = isGrave(result, 1e-4);
+  const growth = unstableVerdict(records);
+  const isHarmless = growth?.kind === 'growth' && !isGrave(result, 1e-5);
+  const isCause = growth?.kind === 'unstable' && overflowsFirst(records);
+  const growths = growth === null ? [] : [growth];
   const verdicts = [
+    ...(isCause ? growths : []),
     ...exceptionVerdicts(records, false),
     ...(hasDecided ? decisions : []),
-    ...unstableVerdicts(records),
+    ...(isHarmless || isCause ? [] : growths),
     ...exceptionVerdicts(records, true),
     ...(result !== undefined && isGrave(result, 2e-7) ? shareVerdicts(records, result) : []),
     ...(hasDecided ? [] : decisions),
   ];
-  return [...verdicts, ...restOf(records, result, verdicts.length)];
+  return [...verdicts, ...restOf(records, result, verdicts.length), ...(isHarmless ? growths : [])];
 }
