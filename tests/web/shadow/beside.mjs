@@ -242,17 +242,20 @@ async function grows(device) {
 
 async function vanishes(device) {
   const x = filled(device, [40], () => 1e-9);
-  const [r, s] = [device.stream('float', [40]), device.stream('float', [40])];
+  const [r, s, t] = [1, 2, 3].map(() => device.stream('float', [40]));
   const { found, kernel } = await followed('vanishes', device, async () => {
     k.vanish(x, r);
     k.field.damp(2, r, s);
+    k.step(0.25, r, t);
     await s.read();
+    await t.read();
   });
-  const [result] = found.results;
+  const [result, difference] = found.results;
   expect('a result that is infinite has no digit', result.error.largest === 'inf' && result.error.last === 'inf' && result.digits === 0, JSON.stringify(result));
   expect('its numbers are counted', result.numbers === 40 && result.notFinite === 40 && result.withoutValue === 40, JSON.stringify(result));
   expect('it says where they come from', found.exceptions[result.exception]?.kernel === 'vanish' && result.shares[0]?.kernel === 'vanish', JSON.stringify([result, found.exceptions]));
-  expect('so has the kernel', kernel('vanish').own.largest === 'inf' && kernel('vanish').digits === 0 && kernel('field::damp').own.largest === 0 && kernel('field::damp').total.largest === 'inf', JSON.stringify(found.kernels));
+  expect('a NaN comes from where the infinities do whose difference it is', difference.exception === result.exception && found.exceptions.length === 2 && found.exceptions[1].kind === 'nan', JSON.stringify([difference, found.exceptions]));
+  expect('the kernel has no digit either', kernel('vanish').own.largest === 'inf' && kernel('vanish').digits === 0 && kernel('field::damp').own.largest === 0 && kernel('field::damp').total.largest === 'inf', JSON.stringify(found.kernels));
   expect('the first verdict is of the infinity', found.verdicts[0].kind === 'infinity' && found.verdicts[0].kernel === 'vanish' && found.verdicts.some(({ kind }) => kind === 'error'), JSON.stringify(found.verdicts));
 }
 
