@@ -291,6 +291,12 @@ async function choices(device) {
   const some = await followed('every', device, run, { every: 3, kernels: ['field::*'] });
   expect('every third call is compared', some.kernel('field::damp').followed === 2 && some.kernel('root').followed === 0, JSON.stringify(some.found.kernels));
   expect('the reference runs all of them', some.found.results[0].error.largest > 1e-9 && some.found.results[0].error.largest < 1e-6, JSON.stringify(some.found.results));
+  const other = await followed('other kernels', device, async () => {
+    k.field.damp(1 / 3, x, x);
+    await x.read();
+  }, { kernels: ['root'] });
+  const [result] = other.found.results;
+  expect('an error of a call that is not compared is that of its kernel', result.error.last > 1e-9 && result.shares.length === 1 && result.shares[0].kernel === 'field::damp', JSON.stringify(result));
   const refused = [[{ every: 0 }, 'every: 0'], [{ every: 1.5 }, 'every: 1.5'], [{ kernels: 'heat' }, 'kernels: give an array'], [{ kernels: [] }, 'kernels'], [{ decisions: 'own' }, "no option 'decisions'"], [null, 'no object']];
   for (const [options, text] of refused) {
     const error = await device.shadow(options).then(() => null, (error) => error);

@@ -7,7 +7,7 @@ import { Stream, View, viewOf } from '../stream.js';
 import type { AnyStream, Elements } from './columns.js';
 import type { StreamRecord } from './records.js';
 import { Series } from './series.js';
-import { Shares } from './shares.js';
+import { Shares, writtenByHost } from './shares.js';
 import { widened } from './widen.js';
 
 /** What is known of the device's elements. */
@@ -31,6 +31,8 @@ export class Counterpart {
   errors = noErrors();
   /** Of the device's elements, if a comparison has asked for them since they were written: sampleOf(). */
   sample: Promise<Float64Array> | null = null;
+  /** The kernel that has written the device's elements last. */
+  writer = writtenByHost;
   readonly record: StreamRecord;
   private held: AnyStream | null = null;
   private isFresh = false;
@@ -68,16 +70,22 @@ export class Counterpart {
     return this.held!;
   }
 
-  /** The device's elements are others now. */
-  leave(isOfPage: boolean): void {
+  /** A kernel, or the page, has written some of the device's elements. */
+  change(writer: number): void {
+    this.writer = writer;
     this.sample = null;
+  }
+
+  /** The device's elements are others now, which the reference has not. */
+  leave(isOfPage: boolean): void {
+    this.change(writtenByHost);
     this.isOfPage = isOfPage;
     this.isFresh = false;
   }
 
   /** Takes over the device's elements of a view, if the reference has the others. */
   takePart(of: View<any, number>): void {
-    this.sample = null;
+    this.change(writtenByHost);
     const held = this.elements();
     if (held === null) return;
     const whole = widened(this.stream, held.element);

@@ -115,7 +115,7 @@ export class FollowedCall {
       return this.end();
     }
     const { records } = this.follower;
-    for (const { of } of this.outputs) if (of !== null) this.follower.counterpartOf(viewOf(of).stream).sample = null;
+    for (const { of } of this.outputs) if (of !== null) this.follower.counterpartOf(viewOf(of).stream).change(this.kernel);
     const start = performance.now();
     try {
       const outputs = this.runOnReference();

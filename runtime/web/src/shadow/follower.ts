@@ -71,6 +71,7 @@ export class Follower implements Observer {
       const arrays = Promise.all([readColumns(of), readColumns(placedOn(of, held))]);
       arrays.catch(() => undefined); // which the comparison sees
       const areReal = scalarsOf(viewOf(of).stream.element).map(isReal);
+      const { writer } = counterpart;
       this.compareLater(2 * bytesOf(of), async () => {
         const [device, reference] = await arrays;
         const errors = compare(areReal, device, null, reference);
@@ -85,6 +86,7 @@ export class Follower implements Observer {
         result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
         result.exception = counterpart.errors.exception;
         result.shares = counterpart.errors.shares.copied();
+        if (result.last > 0 && result.shares.sum() === 0) result.shares.add(writer, 1); // a call that was not compared
       });
     });
   }
@@ -111,7 +113,7 @@ export class Follower implements Observer {
         return;
       }
       const other = this.counterpartOf(target.stream);
-      other.sample = null;
+      other.change(counterpart.writer);
       const room = isWhole && target.stream !== source.stream ? other.room(held.element) : other.taken(held.element);
       (placedOn(from, held) as AnyStream).copyTo(placedOn(to, room) as AnyStream);
       if (isWhole) this.compareLater(0, () => void (other.errors = { ...counterpart.errors, shares: counterpart.errors.shares.copied() }));
