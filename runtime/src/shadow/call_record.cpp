@@ -316,8 +316,10 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     result.numbers = shadow::realComponents(*parameter.element);
     result.exception = exception_;
     result.scale = std::max(result.scale, errors.scale());
-    result.last = result.scale > 0 && errors.reals > 0 ? after.relative * errors.scale() / result.scale
-                                                       : after.relative;
+    // relative to the largest of the reads, since a sum may be 0 by chance
+    result.last = result.scale > 0 && errors.reals > 0
+                      ? std::max(errors.absoluteTotal() / result.scale, errors.relativeIntegers())
+                      : after.relative;
     if (errors.lost > 0) result.last = std::numeric_limits<double>::infinity();
     result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
@@ -467,10 +469,14 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
       keep(read.errors.exception);
     }
     if (wasThere && added.count == 0) return;
-    const bool isKnown = std::ranges::any_of(report.exceptions, [&](const ExceptionRecord& each) {
+    const auto known = std::ranges::find_if(report.exceptions, [&](const ExceptionRecord& each) {
       return each.kernel == kernel && each.kind == kind && each.isInReference == (added.count == 0);
     });
-    if (isKnown || report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
+    if (known != report.exceptions.end()) {
+      if (added.count > 0 || exception_ < 0) keep(static_cast<int>(known - report.exceptions.begin()));
+      return;
+    }
+    if (report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
     report.exceptions.push_back({kind,
                                  kernel,
                                  shown.count,

@@ -60,7 +60,7 @@ namespace {
 
 std::string digitsOf(double error) {
   if (!(error > 0)) return "all digits";
-  const double digits = std::clamp(-std::log10(error), 0.0, 16.0);
+  const double digits = std::clamp(-std::log10(error), 0.0, 16.0) + 0.0;  // not -0
   return fmt::format("{:.1f} digits", digits);
 }
 
@@ -111,17 +111,18 @@ bool isGrave(const ResultRecord* result, double limit) {
   return result != nullptr && (result->largest > limit || result->differs > 0);
 }
 
-void addDecisions(Report& report) {
+/// `areInherited`: those that differ since the inputs of the call do.
+void addDecisions(Report& report, bool areInherited) {
   for (const DecisionRecord& each : report.decisions) {
-    if (each.isInherited) continue;
+    if (each.isInherited != areInherited) continue;
     const std::string kernel(report.nameOf(each.kernel));
     const std::string elements =
         each.elements == 1 ? "one element" : fmt::format("{} elements", each.elements);
     report.verdicts.push_back(
         {"decision", kernel,
-         fmt::format("{} decides differently than in double for {} in call {}: {}{} is {:.9g}, not {:.9g}",
-                     kernel, elements, each.first.call, each.first.output, where(each.first.index),
-                     each.first.device, each.first.reference),
+         fmt::format("{} decides differently than in double for {} in call {}{}: {}{} is {:.9g}, not {:.9g}",
+                     kernel, elements, each.first.call, areInherited ? ", as its inputs differ" : "",
+                     each.first.output, where(each.first.index), each.first.device, each.first.reference),
          each.first.call});
   }
 }
@@ -242,7 +243,20 @@ const KernelRecord* worstByShare(const Report& report) {
 
 void addShares(Report& report, const ResultRecord* result) {
   const KernelRecord* worst = worstByShare(report);
-  if (worst == nullptr || result == nullptr || !(result->largest > 0)) return;
+  if (result == nullptr || !(result->largest > 0)) return;
+  const auto host = std::ranges::find(result->shares.all(), writtenByHost, &Share::kernel);
+  const double ofHost = host == result->shares.all().end() ? 0 : host->share;
+  const auto add = [&](const std::string& whose) {
+    report.verdicts.push_back({"error", "",
+                               fmt::format("{} of the error of what the program reads: {} of '{}' survive",
+                                           whose, digitsOf(result->largest), result->name),
+                               0});
+  };
+  if (worst == nullptr || ofHost > worst->share)
+    return add(fmt::format("what the host has written or copied brings {:.0f} %", 100 * ofHost));
+  if (worst->followed == 0)
+    return add(fmt::format("{} and calls before it, which are not compared, add {:.0f} %", worst->name,
+                           100 * worst->share));
   const std::string choices = worst->choices.empty() ? "" : fmt::format(" ({})", worst->choices);
   report.verdicts.push_back(
       {"error", worst->name,
@@ -264,6 +278,17 @@ void addFlushes(Report& report) {
   }
 }
 
+/// Results that are no numbers, in double as well.
+void addLost(Report& report) {
+  for (const ResultRecord& result : report.results) {
+    if (result.withoutValue == 0) continue;
+    report.verdicts.push_back({"infinity", "",
+                               fmt::format("{} of {} numbers of '{}' are NaN or infinite, in double as well",
+                                           result.withoutValue, result.numbers, result.name),
+                               0});
+  }
+}
+
 void addRest(Report& report, const ResultRecord* result) {
   if (report.calls == 0) {
     report.verdicts.push_back({"nothing", "", "the program has called no kernel", 0});
@@ -272,8 +297,14 @@ void addRest(Report& report, const ResultRecord* result) {
   } else if (report.results.empty()) {
     report.verdicts.push_back({"nothing", "", "the program has read no result", 0});
   } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
+    const std::string digits =
+        (result->largest > 0 ? "at least " : "") + fmt::format("{} survive", digitsOf(result->largest));
+    const bool isWhole = report.followed == report.calls;
     report.verdicts.push_back(
-        {"fine", "", fmt::format("every result is right: at least {} survive", digitsOf(result->largest)),
+        {"fine", "",
+         isWhole ? fmt::format("every result is right: {}", digits)
+                 : fmt::format("every result that was compared is right: {}; {} of {} calls were compared",
+                               digits, report.followed, report.calls),
          0});
   }
 }
@@ -289,12 +320,14 @@ void conclude(Report& report) {
   if (isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, false);
   const bool hasDecided = isGrave(result, 1e-4);
-  if (hasDecided) addDecisions(report);
+  if (hasDecided) addDecisions(report, false);
   if (unstable && !isHarmless && !isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, true);
   if (isGrave(result, 2e-7)) addShares(report, result);
-  if (!hasDecided) addDecisions(report);
+  if (!hasDecided) addDecisions(report, false);
+  if (report.verdicts.empty()) addDecisions(report, true);
   addFlushes(report);
+  if (report.verdicts.empty()) addLost(report);
   addRest(report, result);
   if (isHarmless) report.verdicts.push_back(*unstable);
 }

@@ -199,7 +199,7 @@ std::string exceptionsOf(const Entry& report, const std::string& kernel, std::si
   std::string text;
   for (std::size_t i = 0; i < std::min(most, events.size()); ++i) text += exceptionText(events[i]);
   if (events.size() > most) text += fmt::format("  and {} more; --all shows them\n", events.size() - most);
-  return part("exceptional values that the reference does not have", text);
+  return part("exceptional values, of the device alone or of both", text);
 }
 
 std::string decisionsOf(const Entry& report, const std::string& kernel, std::size_t most) {

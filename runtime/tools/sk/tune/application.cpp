@@ -58,6 +58,7 @@ double RunResult::seconds() const {
 RunResult Application::run(const RunOptions& options) const {
   const TemporaryFolder folder;
   auto changes = options.environment;
+  changes["SK_SHADOW"] = std::nullopt;  // records what the program reads, so that nothing is left for this
   changes["SK_RESULTS"] = (folder.path() / "%p.results").string() + (options.measures ? ",times" : "");
   std::vector<std::optional<FileTime>> before;
   for (const ResultFile& each : files_) before.push_back(timeOf(each.file));

@@ -125,7 +125,7 @@ export class CallRecorder {
     result.numbers = scalarsOf(element).filter(isReal).length;
     result.exception = this.exception;
     result.scale = Math.max(result.scale, errors.scale());
-    result.last = result.scale > 0 && errors.reals > 0 ? (after.relative * errors.scale()) / result.scale : after.relative;
+    result.last = result.scale > 0 && errors.reals > 0 ? Math.max(errors.absoluteTotal() / result.scale, errors.relativeIntegers()) : after.relative;
     if (errors.lost > 0) result.last = Infinity;
     result.largest = Math.max(result.largest, result.last);
     result.differs += errors.decisions.count;
@@ -193,8 +193,9 @@ export class CallRecorder {
       follow(exception);
     }
     if (!isNew && this.inputErrors.some(({ hasNan, hasInfinity }) => (kind === 'nan' ? hasNan : hasInfinity))) return;
-    const isKnown = records.exceptions.some((each) => each.kernel === kernel && each.kind === kind && each.isInReference === !isNew);
-    if (isKnown || records.exceptions.length >= mostRecords || (!isNew && (await this.isRead(kind)))) return;
+    const known = records.exceptions.findIndex((each) => each.kernel === kernel && each.kind === kind && each.isInReference === !isNew);
+    if (known >= 0 && (isNew || this.exception < 0)) follow(known);
+    if (known >= 0 || records.exceptions.length >= mostRecords || (!isNew && (await this.isRead(kind)))) return;
     const shown = isNew ? added : all;
     const first = await this.elementOf(written, shown.first, shown.component, arrays);
     const last = records.exceptions.push({ kind, kernel, elements: shown.count, isInReference: !isNew, first, path: [] }) - 1;
