@@ -94,9 +94,9 @@ prints 'put one in braces, --size={256}'
 run 0 --only 'stressed::scale.shift' --keep pages -- "$program" plain 20
 [[ -s pages/000.html && -s pages/002.json ]] || broken 'the pages are not kept'
 # The files of the program are in the end those of the program as it is.
-"$program" file results.txt
+"$program" store results.txt
 cp results.txt before.txt
-run 0 --only 'stressed::scale.*' -- "$program" file results.txt
+run 0 --only 'stressed::scale.*' -- "$program" store results.txt
 cmp -s results.txt before.txt || broken 'the results are those of an extreme'
 
 # A run that hangs has told what it did, and a run that is interrupted leaves nothing behind.

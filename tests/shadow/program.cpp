@@ -74,6 +74,27 @@ void runFloatNan() {
   plate.around([&] { faults::angle(plate.u, plate.v); });
 }
 
+/// A wrong input that hardly counts in the result, in a call of a loop.
+void runMixed() {
+  Plate plate;
+  faults::advance.with({.precision = sk::Precision::Half})(0.01F, plate.u, plate.v);
+  faults::spread(plate.u, plate.w);
+  for (int i = 0; i < 10; ++i) {
+    faults::mix(1e-9F, plate.v, plate.w, plate.u);
+    std::swap(plate.u, plate.v);
+  }
+  plate.v.read();
+}
+
+/// The worst of several reads of one stream is not the last.
+void runLate() {
+  Plate plate;
+  faults::spread(plate.u, plate.v);
+  plate.v.read();
+  faults::gain(1.25F, plate.u, plate.v);
+  plate.v.read();
+}
+
 void runInfinity() {
   Plate plate(1e18F, 3e19F);
   plate.around([&] { faults::square(plate.u, plate.v); });
@@ -419,7 +440,8 @@ const std::map<std::string, std::function<void()>> programs = {
     {"replay", runReplay},     {"fine", runFine},         {"exit", runExit},
     {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
     {"nothing", runNothing},   {"devices", runDevices},   {"changes", runChanges},
-    {"memory", runMemory},     {"precise", runPrecise},   {"worst", runWorst}};
+    {"memory", runMemory},     {"mixed", runMixed},       {"late", runLate},
+    {"precise", runPrecise},   {"worst", runWorst}};
 
 }  // namespace
 

@@ -54,6 +54,8 @@ faults = {
     "cell": ("decision", "faults::cell"),
     "table": ("error", "faults::response"),
     "cancel": ("error", "faults::spread"),
+    "mixed": ("error", "faults::advance"),
+    "late": ("error", "faults::spread"),
     "unstable": ("unstable", "faults::diffuse"),
     "nearest": ("error", "faults::measure"),
     "sum": ("error", "faults::pairs"),

@@ -7,7 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -321,11 +324,12 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
                       ? std::max(errors.absoluteTotal() / result.scale, errors.relativeIntegers())
                       : after.relative;
     if (errors.lost > 0) result.last = std::numeric_limits<double>::infinity();
+    const bool isWorst = result.last >= result.largest;
     result.largest = std::max(result.largest, result.last);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
     result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
-    result.shares = after.shares;
+    if (isWorst) result.shares = after.shares;
   }
 }
 
@@ -354,6 +358,24 @@ bool CallFollower::turns(const Written& written) const {
   });
 }
 
+/// How much the error of each input counts in an output: by what calls have shown, or else by the inputs' relative errors.
+std::vector<double> CallFollower::weightsOf(const Written& written) const {
+  std::vector<double> errors, weights;
+  for (const Read& read : read_) {
+    errors.push_back(read.errors.relative);
+    const std::optional<double> factor =
+        device_.influences().of(call_.kernel, written.argument, read.argument);
+    if (errors.back() == 0) {
+      weights.push_back(0);
+    } else if (factor) {
+      weights.push_back(*factor * errors.back());
+    }
+  }
+  const bool areKnown =
+      weights.size() == errors.size() && std::ranges::any_of(weights, [](double each) { return each > 0; });
+  return areKnown ? weights : errors;
+}
+
 /// What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had.
 StreamErrors CallFollower::errorsAfter(const Written& written, const OutputErrors& errors, int kernel) const {
   StreamErrors after;
@@ -368,11 +390,10 @@ StreamErrors CallFollower::errorsAfter(const Written& written, const OutputError
   after.hasInfinity = errors.infinities.count > 0;
   if (after.relative > 0) {
     after.shares.add(kernel, own);
-    double inputs = 0;
-    for (const Read& read : read_) inputs += read.errors.relative;
-    for (const Read& read : read_) {
-      if (inputs > 0) after.shares.add(read.errors.shares, (1 - own) * read.errors.relative / inputs);
-    }
+    const std::vector<double> weights = weightsOf(written);
+    const double inputs = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (std::size_t i = 0; i < read_.size() && inputs > 0; ++i)
+      after.shares.add(read_[i].errors.shares, (1 - own) * weights[i] / inputs);
     const double missing = 1 - after.shares.sum();
     if (missing > 1e-6 && own < 1 - 1e-6) after.shares.add(shadow::writtenByHost, missing);
   }

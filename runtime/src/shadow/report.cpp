@@ -78,7 +78,7 @@ const ResultRecord* worstResult(const Report& report) {
 /// The kernels' shares of the errors of all results: a result counts as much as its error.
 void shareErrors(Report& report) {
   double all = 0;
-  const auto weightOf = [](const ResultRecord& result) { return std::fmin(1, result.last); };
+  const auto weightOf = [](const ResultRecord& result) { return std::fmin(1, result.largest); };
   for (const ResultRecord& result : report.results) all += weightOf(result);
   for (const ResultRecord& result : report.results) {
     if (!(all > 0)) break;
@@ -299,7 +299,9 @@ void addRest(Report& report, const ResultRecord* result) {
   } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
     const std::string digits =
         (result->largest > 0 ? "at least " : "") + fmt::format("{} survive", digitsOf(result->largest));
-    const bool isWhole = report.followed == report.calls;
+    // with these options, the reference runs all calls, too
+    const bool isWhole =
+        report.followed == report.calls || report.options.every > 1 || !report.options.kernels.empty();
     report.verdicts.push_back(
         {"fine", "",
          isWhole ? fmt::format("every result is right: {}", digits)

@@ -135,7 +135,7 @@ struct ResultRecord {
       0;  ///< numbers of a read that are NaN or infinite, whatever the reference has; the most of all reads
   int exception = -1;  ///< number of the record of what they come from
   std::int64_t notFinite = 0;  ///< elements of the last read that are not finite, where the reference's are
-  Shares shares;  ///< of the last read
+  Shares shares;  ///< of the read with the largest error
 };
 
 /// What the host gives a parameter of a kernel: a value, or a stream that it has written.

@@ -55,11 +55,12 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
   result.numbers = result.elements * shadow::realComponents(*stream.element);
   result.last = std::max(errors.reportedTotal(), errors.relativeIntegers());
   result.exception = stream.errors.exception;
+  const bool isWorst = result.last >= result.largest;
   result.largest = std::max(result.largest, result.last);
   result.differs += errors.decisions.count;
   result.notFinite = errors.newNans.count + errors.newInfinities.count;
   result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
-  result.shares = stream.errors.shares;
+  if (isWorst) result.shares = stream.errors.shares;
   if (result.last > 0 && result.shares.all().empty()) result.shares.add(stream.last.kernel, 1);
   report->comparisonSeconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -13,6 +13,7 @@
 #include "device/rows_state.hpp"
 #include "shadow/call_record.hpp"
 #include "shadow/copies.hpp"
+#include "shadow/errors.hpp"
 #include "shadow/given.hpp"
 #include "shadow/recorder.hpp"
 
@@ -133,6 +134,7 @@ void CallFollower::run() {
   runOnDevice();
   if (isFollowed && isMeasured_ && !isRunOnce_)
     runOwn();  // before the reference replaces elements that it reads
+  if (isFollowed && isMeasured_) examineInfluences();
   if (!isFollowed || !runOnReference()) {
     loseOutputs(true);
   } else if (isMeasured_) {
@@ -275,18 +277,63 @@ bool CallFollower::runOnReference() {
   return true;
 }
 
+/// What the reference is given with the device's inputs.
+std::vector<Argument> CallFollower::ownArguments() const {
+  std::vector<Argument> arguments(call_.arguments.begin(), call_.arguments.end());
+  for (Argument& argument : arguments) argument.rows = device_.rowsOn(ownReference_, argument.rows);
+  for (const Read& read : read_) arguments[read.argument].region = read.device;
+  for (const Written& written : written_) {
+    const bool isResized = parameterOf(written).role == Role::VariableOutput;
+    arguments[written.argument].region =
+        isResized ? StreamRegion{written.own.get()}
+                  : inPlaceOf(call_.arguments[written.argument].region, *written.own);
+  }
+  return arguments;
+}
+
+void CallFollower::examineInfluences() {
+  const auto isWrong = [](const Read& read) { return read.errors.relative > 0; };
+  const bool isWhole = std::ranges::all_of(written_, [&](const Written& written) {
+    return !written.isPart && written.own != nullptr && parameterOf(written).role != Role::VariableOutput;
+  });
+  if (!hasOwn_ || !isWhole || &ownReference_ != &device_.reference() ||
+      std::ranges::count_if(read_, isWrong) < 2 || !device_.influences().isDue(call_.kernel))
+    return;
+  try {
+    const Stopwatch watch(comparisonSeconds_);
+    for (const Read& read : read_) {
+      if (isWrong(read)) examineInfluence(read);
+    }
+  } catch (const std::exception& error) {
+    device_.recorder().note(
+        fmt::format("whose errors count how much in {} is not known: {}", call_.kernel.name, error.what()));
+  }
+}
+
+/// Makes the call with the reference's elements for one input, and compares with what all inputs of the device give.
+void CallFollower::examineInfluence(const Read& read) {
+  std::vector<Argument> arguments = ownArguments();
+  arguments[read.argument].region = call_.arguments[read.argument].region;
+  arguments[read.argument].region.stream = read.stream->held();
+  std::vector<std::unique_ptr<NativeStream>> results;
+  for (const Written& written : written_) {
+    results.push_back(device_.temporaries().take(*written.own->element, written.own->shape));
+    arguments[written.argument].region = inPlaceOf(call_.arguments[written.argument].region, *results.back());
+  }
+  call_.run(arguments, {}, referenceOptions(device_, ownReference_, call_.options));
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const shadow::OutputErrors change = shadow::compare(*results[i], nullptr, nullptr, *written_[i].own);
+    device_.influences().set(
+        call_.kernel, written_[i].argument, read.argument,
+        std::max(change.relativeTotal(), change.relativeIntegers()) / read.errors.relative);
+    device_.temporaries().giveBack(std::move(results[i]));
+  }
+}
+
 void CallFollower::runOwn() {
   try {
     const Stopwatch watch(referenceSeconds_);
-    std::vector<Argument> arguments(call_.arguments.begin(), call_.arguments.end());
-    for (Argument& argument : arguments) argument.rows = device_.rowsOn(ownReference_, argument.rows);
-    for (const Read& read : read_) arguments[read.argument].region = read.device;
-    for (const Written& written : written_) {
-      const bool isResized = parameterOf(written).role == Role::VariableOutput;
-      arguments[written.argument].region =
-          isResized ? StreamRegion{written.own.get()}
-                    : inPlaceOf(call_.arguments[written.argument].region, *written.own);
-    }
+    const std::vector<Argument> arguments = ownArguments();
     call_.run(arguments, {}, referenceOptions(device_, ownReference_, call_.options));
     hasOwn_ = true;
   } catch (const std::exception& error) {

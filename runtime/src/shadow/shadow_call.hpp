@@ -73,6 +73,10 @@ class CallFollower {
   void runOnDevice();
   bool runOnReference();
   void runOwn();
+  /// Finds out how much each input counts in each output. After runOwn(), before the reference replaces its inputs.
+  void examineInfluences();
+  void examineInfluence(const Read& read);
+  std::vector<Argument> ownArguments() const;
   void compareAll();
   void keepElements();
   void keepInputs();
@@ -88,6 +92,7 @@ class CallFollower {
                        shadow::Report& report);
   bool areRead(shadow::ExceptionRecord::Kind kind) const;
   bool turns(const Written& written) const;
+  std::vector<double> weightsOf(const Written& written) const;
   StreamErrors errorsAfter(const Written& written, const shadow::OutputErrors& errors, int kernel) const;
   void loseOutputs(bool isCounted);
   void giveBack();

@@ -14,6 +14,7 @@
 #include "device/device_state.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
+#include "shadow/influences.hpp"
 #include "shadow/recorder.hpp"
 #include "shadow/shadow_stream.hpp"
 
@@ -81,6 +82,7 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   /// A kernel that the reference cannot run.
   bool isGivenUp(const program::Kernel& kernel) const { return givenUp_.contains(&kernel); }
   void giveUp(const program::Kernel& kernel, const std::string& why);
+  shadow::Influences& influences() { return influences_; }
   /// The order of these keys decides where elements go (permute()).
   void setSortedKeys(ShadowStream* keys) { sortedKeys_ = keys; }
   ShadowStream* sortedKeys() const { return sortedKeys_; }
@@ -142,6 +144,7 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::unique_ptr<NativeDevice> quad_;
   TemporaryStreams temporaries_;
   std::unique_ptr<TemporaryStreams> quadTemporaries_;
+  shadow::Influences influences_;
   std::map<const program::Kernel*, std::string> givenUp_;
   struct RowsCopy;
   std::vector<std::unique_ptr<RowsCopy>> rows_;

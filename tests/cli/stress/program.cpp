@@ -17,7 +17,7 @@
 //   far         overflows in floats alone
 //   twice       starts itself
 //   hang        never ends after its last call, if the sum is large
-//   file FILE   writes its results
+//   store FILE  writes its results
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -159,7 +159,7 @@ void writeResults(const char* file) {
 int main(int argc, char** argv) {
   if (argc < 2) return 64;
   const std::string kind = argv[1];
-  const int size = argc > 2 && kind != "file" ? std::atoi(argv[2]) : 10;
+  const int size = argc > 2 && kind != "store" ? std::atoi(argv[2]) : 10;
   try {
     if (kind == "step" || kind == "stable") runStep(size, kind == "stable");
     if (kind == "divide") runDivide(size);
@@ -190,7 +190,7 @@ int main(int argc, char** argv) {
       runPlain(size);
       return std::system((std::string(argv[0]) + " plain").c_str());
     }
-    if (kind == "file") writeResults(argv[2]);
+    if (kind == "store") writeResults(argv[2]);
   } catch (const sk::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
