@@ -48,7 +48,7 @@ struct Kernel {
   std::uint64_t calls = 0;
   double seconds =
       0;  ///< of its calls, by the wall clock; 0 on devices that queue calls, unless times are asked for; the
-      ///< first call then counts as the mean of the others, because it builds programs
+  ///< first call then counts as the mean of the others, because it builds programs
   bool hasFloats = false;
   std::string whyNotHalf = {}, whyNotWide = {};  ///< why it lacks variants that its device would need
   bool compensates = false;  ///< it sums floats, and can carry the rounding errors of the sums
