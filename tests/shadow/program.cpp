@@ -86,6 +86,15 @@ void runMixed() {
   plate.v.read();
 }
 
+/// The host copies into halves.
+void runNarrowed() {
+  Plate plate;
+  faults::gain(1.25F, plate.u, plate.v);
+  auto halves = plate.device.stream<float>({size}, sk::Storage::Half, "halves");
+  plate.v.copyTo(halves);
+  halves.read();
+}
+
 /// The worst of several reads of one stream is not the last.
 void runLate() {
   Plate plate;
@@ -441,7 +450,7 @@ const std::map<std::string, std::function<void()>> programs = {
     {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
     {"nothing", runNothing},   {"devices", runDevices},   {"changes", runChanges},
     {"memory", runMemory},     {"mixed", runMixed},       {"late", runLate},
-    {"precise", runPrecise},   {"worst", runWorst}};
+    {"narrowed", runNarrowed}, {"precise", runPrecise},   {"worst", runWorst}};
 
 }  // namespace
 

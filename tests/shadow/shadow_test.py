@@ -74,6 +74,8 @@ for name, (kind, kernel) in faults.items():
 
 done, report = run("fine")
 check(first(report)["kind"] == "fine", f"fine: {report['verdicts']}")
+_, report = run("narrowed")
+check(first(report)["kernel"] == "" and "the host has written or copied brings 100 %" in first(report)["text"], f"narrowed: {report['verdicts']}")
 check(not report["notes"], f"fine: {report['notes']}")
 
 # Every kind of call: the same bits, and all of them are followed.

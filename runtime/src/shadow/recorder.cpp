@@ -138,7 +138,7 @@ void Recorder::note(const std::string& text) {
 void Recorder::writeSometimes() {
   // Soon at first, so that a program that hangs or is killed early leaves a report; the report costs little beside the interval.
   using Clock = std::chrono::steady_clock;
-  constexpr Clock::duration longest = std::chrono::seconds(10), shortest = std::chrono::milliseconds(100);
+  constexpr Clock::duration longest = std::chrono::seconds(10), shortest = std::chrono::milliseconds(20);
   const auto now = Clock::now();
   {
     const std::lock_guard lock(mutex_);

@@ -264,6 +264,14 @@ bool ShadowStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   written->copyFrom(on(from, *read), on(to, *written));
   isStale_ = false;
   if (isAll || source.errors.relative > errors.relative) errors = source.errors;
+  constexpr double halfRounding = 0x1p-12;
+  const bool isNarrowed = storage == Storage::Half && source.storage != Storage::Half;
+  if (isNarrowed && errors.relative < halfRounding) {  // what the copy rounds is no kernel's
+    errors = {};
+    errors.relative = halfRounding;
+    errors.shares.add(shadow::writtenByHost, 1);
+    last.kernel = shadow::writtenByHost;
+  }
   return true;
 }
 
