@@ -25,7 +25,7 @@ compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir bounds analysis split transforms native/native.hpp native/library/link_library.hpp glsl program web frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src/support   sk support
-runtime/src/trace     sk trace
+runtime/src/trace     sk support trace
 runtime/src/device    sk toml trace device gl/known_devices.hpp call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/domain    sk domain

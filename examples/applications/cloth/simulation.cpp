@@ -10,7 +10,7 @@
 namespace examples {
 namespace {
 
-/// Of a cloth in single precision, a configuration file may choose the storage.
+/// A configuration file may choose the storage of a cloth in single precision.
 sk::Storage storageFor(sk::Precision precision) {
   switch (precision) {
     case sk::Precision::Extended: return sk::Storage::Extended;

@@ -16,7 +16,7 @@
 namespace examples {
 namespace {
 
-/// Of streams of a scene in single precision, a configuration file may choose the storage.
+/// A configuration file may choose the storage of streams in single precision.
 sk::Storage storageFor(sk::Precision precision) {
   switch (precision) {
     case sk::Precision::Default:

@@ -193,7 +193,7 @@ class DeviceState {
   /// effect, if the host is faster. Throws sk::Error if memory is exhausted; nothing has moved then.
   virtual std::optional<std::int64_t> reorder(const Reordering&) { return std::nullopt; }
 
-  /// A loop has ended that runs call by call: after so many iterations, by its condition or by its limit.
+  /// Is told when a loop that runs call by call ends. `isDone`: its condition ended it, and not its limit.
   virtual void noteLoopEnd(const StreamRegion& /*condition*/, std::int64_t /*iterations*/, bool /*isDone*/) {}
 
   /// Staging memory, which must not outlive the device; null if its elements are in host memory, or if programs of its own

@@ -22,6 +22,7 @@
 #include "device/stream_state.hpp"
 #include "results/members.hpp"
 #include "sk/linked_file.hpp"
+#include "support/process_name.hpp"
 
 namespace sk::results {
 
@@ -132,8 +133,7 @@ Recorder::Recorder(std::string setting, std::uint64_t limit)
     file_.resize(file_.size() - times.size());
     measures_ = true;
   }
-  if (const std::size_t place = file_.find("%p"); place != std::string::npos)
-    file_.replace(place, 2, std::to_string(process_id_));
+  file_ = withProcess(std::move(file_), std::to_string(process_id_));
 }
 
 /// Runs what adds to the record, in the process that began it.

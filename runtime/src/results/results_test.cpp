@@ -47,7 +47,7 @@ void addTo(Recorder& recorder, const std::string& name, T value) {
   recorder.addValue(name, sk::ElementTraits<T>::element(), reinterpret_cast<const std::byte*>(&value));
 }
 
-/// The recorded seconds of a kernel whose calls took so many seconds.
+/// Records calls of a kernel that take these seconds, and returns the seconds that the file has for the kernel.
 double secondsOf(const std::string& setting, const ResultsFile& file, std::initializer_list<int> calls) {
   Recorder recorder(file.path + setting);
   const sk::Device device = sk::Device::native();

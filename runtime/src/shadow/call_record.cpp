@@ -298,7 +298,7 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
     if (errors.own.element >= 0 && worst > record.worstError) {
       record.worstError = worst;
-      record.worst = elementOf(written, errors.own.element, errors.own.component, errors.own.own);
+      record.worst = elementOf(written, errors.own.element, errors.own.component, errors.own.expected);
       isWorst_ = true;
     }
   } else {
@@ -502,7 +502,7 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
                                  kernel,
                                  shown.count,
                                  added.count == 0,
-                                 elementOf(written, shown.first, shown.component, shown.own),
+                                 elementOf(written, shown.first, shown.component, shown.expected),
                                  {}});
     // infinity minus infinity is NaN: it comes from where the infinity does
     if (added.count > 0 || exception_ < 0) keep(static_cast<int>(report.exceptions.size() - 1));
@@ -549,13 +549,13 @@ void CallFollower::recordDecisions(const Written& written, const OutputErrors& e
   };
   if (errors.ownDecisions.count > 0) {
     add(errors.ownDecisions.count, errors.ownDecisions.first, errors.ownDecisions.component,
-        errors.ownDecisions.own, false);
+        errors.ownDecisions.expected, false);
   } else if (errors.decisions.count > 0) {
-    add(errors.decisions.count, errors.decisions.first, errors.decisions.component, errors.decisions.own,
+    add(errors.decisions.count, errors.decisions.first, errors.decisions.component, errors.decisions.expected,
         true);
   }
-  if (errors.own.element >= 0 && isJump(errors, errors.own.own))
-    add(1, errors.own.element, errors.own.component, errors.own.own, false);
+  if (errors.own.element >= 0 && isJump(errors, errors.own.expected))
+    add(1, errors.own.element, errors.own.component, errors.own.expected, false);
 }
 
 }  // namespace sk

@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "native/convert_floats.hpp"
@@ -17,6 +18,7 @@
 #include "sk/native/quad_type.hpp"
 #include "sk/types.hpp"
 #include "support/convert_elements.hpp"
+#include "support/scalar_types.hpp"
 
 namespace sk::shadow {
 
@@ -88,25 +90,7 @@ double OutputErrors::relative(double squares) const {
 using program::Scalar;
 
 bool isReal(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Float:
-    case Scalar::Double:
-    case Scalar::Half:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: return true;
-    case Scalar::Bool:
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Long:
-    case Scalar::Ulong:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Short:
-    case Scalar::Ushort: return false;
-  }
-  return false;
+  return withScalarType(scalar, []<class T>(T) { return !std::is_integral_v<T>; });
 }
 
 std::int64_t realComponents(const program::Element& element) {
@@ -116,14 +100,6 @@ std::int64_t realComponents(const program::Element& element) {
 }
 
 namespace {
-
-template <class T>
-T loaded(const void* array, std::int64_t index) {
-  T value;
-  std::memcpy(&value, static_cast<const std::byte*>(array) + index * static_cast<std::int64_t>(sizeof value),
-              sizeof value);
-  return value;
-}
 
 /// The array of a component.
 struct Column {
@@ -137,28 +113,12 @@ struct Column {
         bytes(stream.components.types()[component].storedBytes) {}
 
   double at(std::int64_t index) const {
-    switch (scalar) {
-      case Scalar::Half: return static_cast<float>(loaded<half>(array, index));
-      case Scalar::Unorm8: return static_cast<float>(loaded<unorm8>(array, index));
-      case Scalar::Snorm8: return static_cast<float>(loaded<snorm8>(array, index));
-      case Scalar::Unorm16: return static_cast<float>(loaded<unorm16>(array, index));
-      case Scalar::Snorm16: return static_cast<float>(loaded<snorm16>(array, index));
-      case Scalar::Float:
-      case Scalar::Double:
-        if (bytes == sizeof(float)) return loaded<float>(array, index);
-        if (bytes == sizeof(double)) return loaded<double>(array, index);
-        return static_cast<double>(loaded<native::Quad>(array, index));
-      case Scalar::Bool:
-      case Scalar::Uchar: return loaded<std::uint8_t>(array, index);
-      case Scalar::Int: return loaded<std::int32_t>(array, index);
-      case Scalar::Uint: return loaded<std::uint32_t>(array, index);
-      case Scalar::Long: return static_cast<double>(loaded<std::int64_t>(array, index));
-      case Scalar::Ulong: return static_cast<double>(loaded<std::uint64_t>(array, index));
-      case Scalar::Char: return loaded<std::int8_t>(array, index);
-      case Scalar::Short: return loaded<std::int16_t>(array, index);
-      case Scalar::Ushort: return loaded<std::uint16_t>(array, index);
-    }
-    return 0;
+    const std::byte* const place =
+        static_cast<const std::byte*>(array) + index * static_cast<std::int64_t>(bytes);
+    if (scalar != Scalar::Float && scalar != Scalar::Double) return numberAt(place, scalar);
+    if (bytes == sizeof(float)) return componentAt<float>(place);
+    if (bytes == sizeof(double)) return componentAt<double>(place);
+    return static_cast<double>(componentAt<native::Quad>(place));
   }
 };
 
@@ -275,7 +235,8 @@ template <class T>
 double sumOfSquares(const void* array, std::int64_t first, std::int64_t count) {
   double sums[4] = {};
   for (std::int64_t i = 0; i < count; ++i) {
-    const auto value = static_cast<double>(loaded<T>(array, first + i));
+    const auto value = static_cast<double>(componentAt<T>(
+        static_cast<const std::byte*>(array) + (first + i) * static_cast<std::int64_t>(sizeof(T))));
     sums[i % 4] += value * value;
   }
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);

@@ -17,13 +17,13 @@ struct Found {
   std::int64_t count = 0;
   std::int64_t first = -1;  ///< row-major number of the element
   int component = 0;  ///< of the first one
-  double own = 0;  ///< what the reference computes there with the device's inputs
+  double expected = 0;  ///< what the reference computes there with the device's inputs
 
   void add(std::int64_t element, int at, double value) {
     if (count++ != 0 && element >= first) return;
     first = element;
     component = at;
-    own = value;
+    expected = value;
   }
   void add(const Found& other) {
     if (other.count == 0) return;
@@ -38,7 +38,7 @@ struct Worst {
   double error = 0;
   std::int64_t element = -1;
   int component = 0;
-  double own = 0;  ///< what the reference computes there with the device's inputs
+  double expected = 0;  ///< what the reference computes there with the device's inputs
 };
 
 /// Sums over the components of real numbers that are finite in all three arrays, and counts of others.

@@ -100,14 +100,6 @@ void set(Options& options, std::string_view name, std::string_view value) {
 
 }  // namespace
 
-void Options::name(std::string_view process) {
-  constexpr std::string_view placeholder = "%p";
-  for (std::string* const file : {&report, &inputs}) {
-    const std::size_t at = file->find(placeholder);
-    if (at != std::string::npos) file->replace(at, placeholder.size(), process);
-  }
-}
-
 std::string Options::json() const {
   const std::size_t dot = report.rfind('.'), slash = report.rfind('/');
   const bool hasEnding = dot != std::string::npos && (slash == std::string::npos || dot > slash);

@@ -33,8 +33,6 @@ struct Options {
   bool listsGiven = false;  ///< the report lists what the host gives to kernels
   std::vector<Setting> settings;  ///< what is put in its place
 
-  /// Puts a text in the place of "%p" in the names of files.
-  void name(std::string_view process);
   /// Where the report goes as JSON: the same name with the ending .json.
   std::string json() const;
 };

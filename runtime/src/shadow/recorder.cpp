@@ -17,6 +17,7 @@
 #include "shadow/files.hpp"
 #include "shadow/report_page.hpp"
 #include "sk/error.hpp"
+#include "support/process_name.hpp"
 
 namespace sk::shadow {
 
@@ -51,7 +52,8 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
   hasFailed = true;
   try {
     Options options = parseOptions(option);
-    options.name(rankOfProcess().ranks > 1 ? "ranks" : std::to_string(::getpid()));
+    const std::string process = rankOfProcess().ranks > 1 ? "ranks" : std::to_string(::getpid());
+    for (std::string* const file : {&options.report, &options.inputs}) *file = withProcess(*file, process);
     auto* const made = new Recorder(std::move(options), device);
     const bool isFirst = made->report_.rank == 0;
     if (isFirst) ::unlink((made->options().json() + ".ranks").c_str());  // of a run that was cut off

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "sk/error.hpp"
+#include "support/process_name.hpp"
 
 namespace sk {
 
@@ -69,13 +70,6 @@ bool writeAt(int file, off_t place, std::string_view text) {
   return true;
 }
 
-std::string withProcess(std::string name) {
-  if (const std::size_t place = name.find("%p"); place != std::string::npos) {
-    name.replace(place, 2, std::to_string(::getpid()));
-  }
-  return name;
-}
-
 /// The bytes of the character in UTF-8 at the beginning of a text; 0 if there is none.
 std::size_t characterLength(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -116,7 +110,8 @@ std::string jsonString(std::string_view text) {
 }
 
 TraceFile::TraceFile(const std::string& name)
-    : name_(withProcess(name)), file_(::open(name_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    : name_(withProcess(name, std::to_string(::getpid()))),
+      file_(::open(name_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (file_ >= 0) begin();
   if (file_ >= 0 && failure_.empty()) return;
   const std::string why = file_ < 0 ? std::strerror(errno) : failure_;

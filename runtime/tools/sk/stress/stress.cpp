@@ -25,6 +25,7 @@
 
 #include "accuracy/child_process.hpp"
 #include "accuracy/progress.hpp"
+#include "application/program_options.hpp"
 #include "stress/report.hpp"
 
 namespace sk_tool {
@@ -255,13 +256,7 @@ void addStress(CLI::App& app) {
       ->type_name("FOLDER");
   command->add_flag("--all", options->isAll,
                     "list the cases that hold, too, and all that is wrong with the others");
-  command->add_flag("--any-status", options->anyStatus,
-                    "the exit status of the program does not count, because it checks its own results");
-  command->add_option("program", options->words, "after --, the program and its arguments")->required();
-  for (CLI::Option* option : command->get_options()) {
-    if (option->get_lnames().empty() || option->get_expected_max() <= 1) continue;
-    option->allow_extra_args(false);  // one value each time
-  }
+  addProgram(*command, options->words, options->anyStatus);
   command->callback([options] { stress::runStress(*options); });
 }
 

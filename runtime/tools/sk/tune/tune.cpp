@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 
 #include "accuracy/child_process.hpp"
+#include "application/program_options.hpp"
 #include "assemble/nearest_word.hpp"
 #include "commands.hpp"
 #include "support/cache_folder.hpp"
@@ -296,16 +297,10 @@ void addTune(CLI::App& app) {
   command->add_option("--chart", options->chart, "a chart of all trials, FILE.svg or FILE.png");
   command->add_flag("--allow-decisions", options->allowsDecisions,
                     "integer results, and how often something is read, may change");
-  command->add_flag("--any-status", options->anyStatus,
-                    "the exit status of the program does not count, because it checks its own results");
   command->add_flag("--continue", options->continues,
                     "goes on where an earlier search of the same program was ended");
   command->add_flag("--fresh", options->isFresh, "computes the right results anew");
-  command->add_option("program", options->words, "after --, the program and its arguments")->required();
-  for (CLI::Option* option : command->get_options()) {
-    if (option->get_lnames().empty() || option->get_expected_max() <= 1) continue;
-    option->allow_extra_args(false);  // one value each time
-  }
+  addProgram(*command, options->words, options->anyStatus);
   command->callback([options] { tune::tune(*options); });
 }
 
