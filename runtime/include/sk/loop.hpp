@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -56,6 +57,10 @@ class Loop {
   std::int64_t until(const S& done, const LoopEnd& end = {}) {
     return until(regionOf(done), end);
   }
+
+  /// How repeat() runs the calls here, in lines for people to read: which of them run together in tiles, of which lengths and
+  /// for how many iterations at once; and of those that run one by one, why. Throws sk::Error as repeat() does.
+  std::string plan() const;
 
  private:
   friend class Device;

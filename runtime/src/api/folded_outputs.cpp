@@ -230,6 +230,11 @@ class RecordedFold final : public RecordedCall {
   }
 
   void run() override { call_.run(); }
+  std::string_view name() const override { return call_.resolved().reduction.fold.name; }
+  bool addUses(std::vector<StreamUse>& uses) const override {
+    arguments_.addUses(uses);
+    return true;
+  }
 
  private:
   const OwnedArguments arguments_;

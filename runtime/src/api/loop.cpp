@@ -80,6 +80,10 @@ void Loop::repeat(std::int64_t times) {
   });
 }
 
+std::string Loop::plan() const {
+  return withHostMemory("plan", [&] { return stateOf(state_).plan(); });
+}
+
 std::int64_t Loop::until(const StreamRegion& done, const LoopEnd& end) {
   return withHostMemory("until", [&] {
     LoopState& loop = stateOf(state_);

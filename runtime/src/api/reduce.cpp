@@ -282,6 +282,11 @@ class RecordedReduction final : public RecordedCall {
   }
 
   void run() override { runResolved(call_); }
+  std::string_view name() const override { return call_.reduction.fold.name; }
+  bool addUses(std::vector<StreamUse>& uses) const override {
+    arguments_.addUses(uses);
+    return true;
+  }
 
  private:
   const OwnedArguments arguments_;

@@ -72,12 +72,25 @@ class RecordedKernel final : public RecordedCall {
   }
 
   void run() override {
-    if (!std::exchange(isPrepared_, true) && !needsDenseArguments(call_.kernel, call_.arguments))
-      prepared_ = device_.prepare(call_);
+    prepare();
     runResolved(device_, call_, prepared_.get());
+  }
+  std::string_view name() const override { return call_.kernel.name; }
+  RecordedCall* onDevice() override {
+    prepare();
+    return prepared_.get();
+  }
+  bool addUses(std::vector<StreamUse>& uses) const override {
+    arguments_.addUses(uses);
+    return true;
   }
 
  private:
+  void prepare() {
+    if (!std::exchange(isPrepared_, true) && !needsDenseArguments(call_.kernel, call_.arguments))
+      prepared_ = device_.prepare(call_);
+  }
+
   DeviceState& device_;
   const OwnedArguments arguments_;
   ResolvedCall call_;

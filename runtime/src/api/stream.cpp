@@ -329,6 +329,7 @@ class RecordedFill final : public RecordedCall {
   }
 
   void run() override { runFill(region_, element_.data()); }
+  std::string_view name() const override { return "fill"; }
 
  private:
   StreamRegion region_;
@@ -390,6 +391,7 @@ class RecordedCopy final : public RecordedCall {
   }
 
   void run() override { runCopy(from_, to_); }
+  std::string_view name() const override { return "copyTo"; }
 
  private:
   StreamRegion from_;

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "sk/loop.hpp"
 #include "sk/stream.hpp"
@@ -24,6 +27,14 @@ class LoopRunner {
   /// Runs until the condition, one element that is checked, is true after an iteration. Returns the number of
   /// iterations.
   virtual std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) = 0;
+  /// What Loop::plan() says.
+  virtual std::string plan(LoopState& loop) = 0;
+};
+
+/// A stream of a recorded call.
+struct StreamUse {
+  StreamState* stream;
+  bool isWritten;  ///< else it is read
 };
 
 /// A call whose arguments have been checked, with copies of all that it refers to except streams.
@@ -35,6 +46,13 @@ class RecordedCall {
   RecordedCall& operator=(const RecordedCall&) = delete;
 
   virtual void run() = 0;
+
+  /// Of the kernel, or of what else it does.
+  virtual std::string_view name() const { return "a step of the runtime"; }
+  /// The call as the device repeats it, where it has prepared that, which may happen here; else null.
+  virtual RecordedCall* onDevice() { return nullptr; }
+  /// Adds the streams that it uses, and returns true; or returns false: nothing is known.
+  virtual bool addUses(std::vector<StreamUse>&) const { return false; }
 };
 
 }  // namespace sk

@@ -237,6 +237,10 @@ void LoopState::checkBeforeRun() const {
 
 void LoopState::runOnce() {
   for (const std::unique_ptr<RecordedCall>& call : calls_) call->run();
+  exchangeStreams();
+}
+
+void LoopState::exchangeStreams() {
   for (const auto& [a, b] : exchanges_) a->exchangeElements(*b);
 }
 
@@ -261,6 +265,11 @@ std::int64_t LoopState::runAndAsk(const StreamRegion& done, std::int64_t every, 
   }
   device_->noteLoopEnd(done, ran, isDone);
   return ran;
+}
+
+std::string LoopState::plan() {
+  if (runner_) return runner_->plan(*this);
+  return fmt::format("{} calls run one after the other\n", calls_.size());
 }
 
 bool LoopState::isTrue(const StreamRegion& done) {
@@ -289,6 +298,18 @@ OwnedArguments::OwnedArguments(const program::Kernel& kernel, std::span<const Ar
     values_.push_back(std::make_unique<std::byte[]>(bytes));
     std::memcpy(values_.back().get(), arguments_[i].value, bytes);
     arguments_[i].value = values_.back().get();
+  }
+}
+
+void OwnedArguments::addUses(std::vector<StreamUse>& uses) const {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    StreamState* const stream = arguments_[i].region.stream;
+    if (stream == nullptr) continue;
+    const program::Role role = kernel_->parameters[i].role;
+    const bool isWritten = role == program::Role::Output || role == program::Role::Accumulator ||
+                           role == program::Role::Scatter || role == program::Role::VariableOutput;
+    uses.push_back({stream, isWritten});
+    if (role == program::Role::Scatter) uses.push_back({stream, false});  // what it does not store to stays
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -42,6 +43,8 @@ class LoopState {
   void checkBeforeRun() const;
   /// Runs all calls once, and exchanges the elements of the streams that were swapped.
   void runOnce();
+  /// Exchanges the elements of the streams that were swapped.
+  void exchangeStreams();
   /// Runs them as the device runs loops.
   void run(std::int64_t times);
   /// Runs them until the condition, one element, is true, and returns how often.
@@ -67,6 +70,11 @@ class LoopState {
     Shape shape;
   };
   std::span<const Used> used() const { return used_; }
+  std::span<const std::unique_ptr<RecordedCall>> calls() const { return calls_; }
+  /// The streams that exchange their elements after an iteration, in order.
+  std::span<const std::pair<StreamState*, StreamState*>> exchanges() const { return exchanges_; }
+  /// What Loop::plan() says.
+  std::string plan();
   /// Whether a recorded call uses the stream.
   bool uses(const StreamState* stream) const;
 
@@ -110,6 +118,8 @@ class OwnedArguments {
     loop.use(*kernel_);
     for (const Argument& argument : arguments_) loop.use(argument.region.stream);
   }
+  /// RecordedCall::addUses()
+  void addUses(std::vector<StreamUse>& uses) const;
 
  private:
   const program::Kernel* kernel_;

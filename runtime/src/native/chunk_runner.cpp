@@ -60,14 +60,62 @@ void ChunkRunner::moveTo(const Extents& first, std::size_t rows) {
 
 void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows) {
   if (!runsBlocks_) return runRow(first, count, rows);
+  if (count != layout_.width()) return runPartOfRows(first, count, rows);
   Extents at = first;
   for (std::size_t left = rows, done = 0; left > 0; left -= done, at[1] += static_cast<std::int64_t>(done)) {
-    done = count == layout_.width() ? runBlock(at, left) : 0;
+    done = runBlock(at, left);
     if (done == 0) {
       runRow(at, count, 1);
       done = 1;
     }
   }
+}
+
+void ChunkRunner::runPartOfRows(const Extents& first, std::int64_t count, std::size_t rows) {
+  const RowEnds ends = arrays_.ends();
+  const native::Range columns = layout_.columns();
+  const std::int64_t begin = std::max(first[0], columns.begin + ends.left);
+  const std::int64_t end = std::min(first[0] + count, columns.end - ends.right);
+  const bool hasInner = end - begin >= lanes_;
+  Extents at = first;
+  const auto runRowPart = [&](std::int64_t from, std::int64_t to) {
+    if (from >= to) return;
+    Extents part = at;
+    part[0] = from;
+    runRow(part, to - from, 1);
+  };
+  for (std::size_t left = rows, done = 0; left > 0; left -= done, at[1] += static_cast<std::int64_t>(done)) {
+    if (!hasInner) {
+      runRowPart(first[0], first[0] + count);
+      done = 1;
+      continue;
+    }
+    Extents inner = at;
+    inner[0] = begin;
+    done = runInnerBlock(inner, end - begin, left);
+    for (std::size_t row = 0; row < done && (begin > first[0] || end < first[0] + count); ++row) {
+      at[1] += static_cast<std::int64_t>(row);
+      runRowPart(first[0], begin);
+      runRowPart(end, first[0] + count);
+      at[1] -= static_cast<std::int64_t>(row);
+    }
+  }
+}
+
+std::size_t ChunkRunner::runInnerBlock(const Extents& first, std::int64_t count, std::size_t most) {
+  moveTo(first, 1);
+  const std::size_t rows = arrays_.blockOf(most).rows;
+  computeColumns(first[0], first[0] + count, rows);
+  chunks_[0].rows = 1;
+  return rows;
+}
+
+void ChunkRunner::stayNear() {
+  constexpr std::int64_t bytes = 16384;  // half of the nearest cache
+  std::int64_t perColumn = 0;
+  for (const SlotLayout::Array& array : layout_.arrays()) perColumn += array.bytes.held;
+  mostColumns_ = std::max<std::int64_t>(bytes / std::max<std::int64_t>(perColumn, 1) & -native::mostLanes,
+                                        2 * native::mostLanes);
 }
 
 void ChunkRunner::runRow(const Extents& first, std::int64_t count, std::size_t rows) {
@@ -117,12 +165,17 @@ std::size_t ChunkRunner::runBlock(const Extents& first, std::size_t most) {
   const native::Range columns = layout_.columns();
   const std::int64_t begin = columns.begin + (block.mayCrossEnds ? 0 : ends.left);
   const std::int64_t end = columns.end - (block.mayCrossEnds ? 0 : ends.right);
-  const std::int64_t whole = (end - begin) & -lanes_;
-  computeBlock(begin, whole, block.rows);
-  if (begin + whole < end) computeBlock(end - lanes_, lanes_, block.rows);
+  computeColumns(begin, end, block.rows);
   arrays_.storeEnds(ends, block.rows);
   chunks_[0].rows = 1;
   return block.rows;
+}
+
+void ChunkRunner::computeColumns(std::int64_t begin, std::int64_t end, std::size_t rows) {
+  const std::int64_t whole = (end - begin) & -lanes_;
+  for (std::int64_t x = 0; x < whole; x += std::min(mostColumns_, whole))
+    computeBlock(begin + x, std::min(mostColumns_, whole - x), rows);
+  if (begin + whole < end) computeBlock(end - lanes_, lanes_, rows);
 }
 
 void ChunkRunner::computeBlock(std::int64_t x, std::int64_t count, std::size_t rows) {

@@ -31,6 +31,10 @@ class ChunkRunner {
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
               ChunkHook hook = {}, std::size_t rows = 1);
 
+  /// Computes several rows in parts of so many columns that the nearest cache holds what they read: for elements that are in
+  /// the next cache already, because those in memory are better read in the order in which they lie.
+  void stayNear();
+
   /// The number of rows that run() should get in one call. Several rows together cost less than one at a time.
   static std::size_t rowsAtOnce(const SlotLayout& layout);
 
@@ -54,6 +58,9 @@ class ChunkRunner {
   /// Computes whole rows from `first` on, at most `most`: first their ends together, then the elements between them, some
   /// of which may be computed twice. Returns the number of rows; 0 if that is not possible.
   std::size_t runBlock(const native::Extents& first, std::size_t most);
+  /// Likewise for a part of each row, none of which needs neighbours beyond its ends.
+  std::size_t runInnerBlock(const native::Extents& first, std::int64_t count, std::size_t most);
+  void runPartOfRows(const native::Extents& first, std::int64_t count, std::size_t rows);
   void moveTo(const native::Extents& first, std::size_t rows);
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
   /// For whole groups of lanes whose elements and neighbours are read in place.
@@ -61,6 +68,8 @@ class ChunkRunner {
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
   void compute(std::int64_t x, std::int64_t count);
   void computeBlock(std::int64_t x, std::int64_t count, std::size_t rows);
+  /// At least a group of lanes; the last group may be computed twice.
+  void computeColumns(std::int64_t begin, std::int64_t end, std::size_t rows);
 
   const SlotLayout& layout_;
   native::RunFunction* function_;
@@ -70,6 +79,8 @@ class ChunkRunner {
   bool runsBlocks_;  ///< several rows in one call of the code
   std::size_t wanted_ = 1;  ///< rows to compute
   std::size_t placed_ = 1;  ///< wanted_, rounded up to a multiple of together_
+  std::int64_t mostColumns_ =
+      std::numeric_limits<std::int64_t>::max();  ///< that several rows compute at a time
   std::int64_t staged_;  ///< most elements of a row that are laid out at a time
   SlotArrays arrays_;
   std::array<native::Chunk, native::mostRows> chunks_;

@@ -61,6 +61,12 @@ class Components {
 
   RealType real() const { return real_; }
   std::span<const ComponentType> types() const { return types_; }
+  /// The bytes of an element in all arrays.
+  std::int64_t bytesOfElement() const {
+    std::int64_t bytes = 0;
+    for (const ComponentType& type : types_) bytes += static_cast<std::int64_t>(type.storedBytes);
+    return bytes;
+  }
 
   /// A copy that holds floats as `real`.
   Components clone(std::int64_t count, RealType real) const;

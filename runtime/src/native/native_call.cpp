@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <functional>
 #include <list>
-#include <new>
 #include <numeric>
 #include <span>
 
@@ -20,77 +19,19 @@
 #include "native/entries.hpp"
 #include "native/fold_code.hpp"
 #include "native/native_device.hpp"
+#include "native/native_pass.hpp"
 #include "native/native_stream.hpp"
 #include "native/operands.hpp"
+#include "native/prepared_run.hpp"
 #include "native/run_code.hpp"
 #include "native/sum_exactly.hpp"
+#include "native/tiled_loop.hpp"
 #include "sk/call.hpp"
 #include "sk/native/quad_type.hpp"
-#include "trace/trace.hpp"
 
 namespace sk {
 
 namespace {
-
-// Records the loops of native code in a trace. They run on the calling thread and on threads that it starts,
-// so that the host's clock times them.
-
-/// Traces and counts one loop nest for as long as this object lives; does nothing if the device does neither.
-class NativePass {
- public:
-  NativePass(DeviceState& device, const program::Kernel& kernel, std::string_view step,
-             std::span<const Argument> arguments, const Shape& domain)
-      : trace_(device.trace.get()) {
-    if (trace_ != nullptr || device.passCount) begin(device, kernel, step, arguments, domain);
-  }
-  ~NativePass() {
-    if (trace_ != nullptr) end();
-  }
-  NativePass(const NativePass&) = delete;
-  NativePass& operator=(const NativePass&) = delete;
-
- private:
-  void begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
-             std::span<const Argument> arguments, const Shape& domain);
-  void end() noexcept;
-
-  Trace* trace_;
-  PassRecord record_;
-  Trace::Time begin_ = 0;
-};
-
-/// The bytes of a region in the arrays that hold it.
-std::int64_t bytesOf(const StreamRegion& region) {
-  const auto& stream = static_cast<const NativeStream&>(*region.stream);
-  std::int64_t bytes = 0;
-  for (const ComponentType& component : stream.components.types()) {
-    bytes += region.shape.size() * static_cast<std::int64_t>(component.storedBytes);
-  }
-  return bytes;
-}
-
-void NativePass::begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
-                       std::span<const Argument> arguments, const Shape& domain) {
-  record_ = {std::string(kernel.name), std::string(step), "native", toString(domain), 0, 0};
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i].region.stream == nullptr) continue;
-    const program::Role role = kernel.parameters[i].role;
-    const bool isRead = role == program::Role::Input || role == program::Role::Gather;
-    (isRead ? record_.bytesRead : record_.bytesWritten) += bytesOf(arguments[i].region);
-  }
-  if (device.passCount) record_.addTo(*device.passCount);
-  begin_ = Trace::now();
-}
-
-void NativePass::end() noexcept {
-  const Trace::Time end = Trace::now();
-  try {
-    trace_->hostPass(record_, begin_, end);
-    trace_->devicePass(record_, begin_, end, "wall clock");
-  } catch (const std::bad_alloc&) {
-    return;  // the trace lacks this pass
-  }
-}
 
 using native::Extents;
 using native::Operand;
@@ -110,12 +51,6 @@ class NativeSums final : public RoundedSums {
  private:
   std::vector<Real> sums_;
 };
-
-CodeChoice codeChoice(RealType real, const CallOptions& options) {
-  return {.real = real,
-          .mayContract = options.contraction == Contraction::Fast,
-          .mayReorder = options.order == Order::Any};
-}
 
 std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
   if (!call.scan) return std::nullopt;
@@ -275,48 +210,6 @@ void NativeDevice::run(const ResolvedCall& call) {
   operands.settle();
 }
 
-namespace {
-
-/// A kernel's call that keeps its operands for the next run.
-class PreparedRun final : public RecordedCall {
- public:
-  PreparedRun(NativeDevice& device, const ResolvedCall& call, const Kernel& kernel, RealType real,
-              std::vector<native::Table> tables)
-      : device_(device),
-        resolved_(call),
-        kernel_(kernel),
-        choice_(codeChoice(real, call.options)),
-        operands_(real, kernel, call.arguments, call.domain, std::move(tables), false, call.options.box),
-        call_(operands_.call()),
-        code_(kernel, choice_, operands_.readsValuesInStreams()) {
-    call_.isSilent = device.isSilent;
-  }
-
-  bool mayRun() { return operands_.mayRunAgain(); }
-
-  void run() override {
-    operands_.beginAgain();
-    WriteScope writes(operands_.writtenInPlace());
-    {
-      const NativePass traced(device_, kernel_, {}, resolved_.arguments, resolved_.domain);
-      code_.run(call_);
-    }
-    operands_.settleAgain();
-    writes.commit();
-  }
-
- private:
-  NativeDevice& device_;
-  const ResolvedCall& resolved_;
-  const Kernel& kernel_;
-  const CodeChoice choice_;
-  Operands operands_;
-  native::Call call_;
-  RepeatedCode code_;
-};
-
-}  // namespace
-
 // Gathers and scatters find elements by index, and results of folds are stored, in rows without gaps. A part that a
 // call also reads takes a temporary of its own size, rather than a copy of the stream for readers.
 bool NativeDevice::needsDense(const Kernel& kernel, std::span<const Argument> arguments, std::size_t i) {
@@ -334,6 +227,8 @@ bool NativeDevice::needsDense(const Kernel& kernel, std::span<const Argument> ar
   }
   return false;
 }
+
+std::unique_ptr<LoopRunner> NativeDevice::makeLoopRunner() { return makeTiledLoop(*this); }
 
 std::unique_ptr<RecordedCall> NativeDevice::prepare(const ResolvedCall& call) {
   checkTarget(call.kernel, call.options.target);

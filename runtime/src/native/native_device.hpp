@@ -47,6 +47,7 @@ class NativeDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
+  std::unique_ptr<LoopRunner> makeLoopRunner() override;
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion&) override { return false; }
   void reduce(const ResolvedReduction& call) override;

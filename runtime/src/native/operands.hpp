@@ -108,6 +108,22 @@ class Operands {
     }
   }
   std::span<StreamState* const> writtenInPlace() const { return writtenInPlace_; }
+
+  /// An operand whose arrays are those of a stream.
+  struct Lent {
+    std::size_t operand;
+    NativeStream* stream;
+    bool isSpare;
+  };
+  /// The rest is for calls that run in parts (native/tiled_call.hpp): known after mayRunAgain().
+  std::span<const Lent> lent() const { return lent_; }
+  /// The streams that get their spare arrays after a run.
+  std::span<NativeStream* const> replaced() const { return replaced_; }
+  /// Calls visit(stream) for streams whose elements are values of the call.
+  template <class Visit>
+  void forEachValueInStream(Visit&& visit) const {
+    for (const Held& held : held_) visit(nativeStream(held.region));
+  }
   void settleAgain() {
     for (NativeStream* const stream : replaced_) stream->exchange();
     for (const StreamRegion& region : results_) {
@@ -195,11 +211,6 @@ class Operands {
   struct Held {
     StreamRegion region;
     Components& value;
-  };
-  struct Lent {
-    std::size_t operand;  ///< whose arrays are a stream's
-    NativeStream* stream;
-    bool isSpare;
   };
 
   /// True if an argument is written neither to spare arrays nor to a copy.

@@ -263,6 +263,32 @@ class CodeRun {
     }
   }
 
+  /// Computes a box of the domain on the calling thread. There are no variable and scatter outputs.
+  void runBox(const native::Part& box) const {
+    const std::size_t atOnce =
+        std::min(ChunkRunner::rowsAtOnce(layout_), static_cast<std::size_t>(box.extent[1]));
+    const std::int64_t rows = rowsEntry_ != nullptr ? rowsEntry_->rows : static_cast<std::int64_t>(atOnce);
+    const std::int64_t width = rowsEntry_ != nullptr ? native::mostLanes : box.extent[0];
+    ChunkRunner runner = rowsEntry_ != nullptr ? ChunkRunner(layout_, *rowsEntry_, frame_.get())
+                                               : ChunkRunner(layout_, entry_, frame_.get(), {}, atOnce);
+    runner.stayNear();
+    Extents at = box.first;
+    for (std::int64_t w = 0; w < box.extent[3]; ++w) {
+      at[3] = box.first[3] + w;
+      for (std::int64_t z = 0; z < box.extent[2]; ++z) {
+        at[2] = box.first[2] + z;
+        for (std::int64_t x = 0; x < box.extent[0]; x += width) {
+          at[0] = box.first[0] + x;
+          for (std::int64_t y = 0; y < box.extent[1]; y += rows) {
+            at[1] = box.first[1] + y;
+            runner.run(at, std::min(width, box.extent[0] - x),
+                       static_cast<std::size_t>(std::min(rows, box.extent[1] - y)));
+          }
+        }
+      }
+    }
+  }
+
   /// True if gathers have border values, which are read when the call is prepared.
   bool hasBorders() const { return layout_.hasBorders(); }
 
@@ -464,15 +490,25 @@ void runCode(const Kernel& kernel, const native::Call& call, const CodeChoice& c
   CodeRun(kernel, call, choice).run();
 }
 
+namespace {
+
+/// Where each operand's list of arrays is, and these.
+std::vector<const void*> arraysOf(std::span<const native::Operand> operands) {
+  std::vector<const void*> arrays;
+  for (const native::Operand& operand : operands) {
+    arrays.push_back(operand.components.data());
+    arrays.insert(arrays.end(), operand.components.begin(), operand.components.end());
+  }
+  return arrays;
+}
+
+}  // namespace
+
 struct RepeatedCode::State {
   State(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
       : operands(call.operands.begin(), call.operands.end()),
-        code(kernel, {operands, call.domain, call.tables, call.part, call.isSilent}, choice) {
-    for (const native::Operand& operand : operands) {
-      arrays.push_back(operand.components.data());
-      arrays.insert(arrays.end(), operand.components.begin(), operand.components.end());
-    }
-  }
+        arrays(arraysOf(operands)),
+        code(kernel, {operands, call.domain, call.tables, call.part, call.isSilent}, choice) {}
 
   bool has(const native::Call& call) const {
     auto next = arrays.begin();
@@ -519,5 +555,35 @@ void RepeatedCode::run(const native::Call& call) {
     state.code.runAgain();
   }
 }
+
+struct BoxCode::State {
+  State(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
+      : operands(call.operands.begin(), call.operands.end()), lists(operands.size()) {
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      lists[i].assign(operands[i].components.begin(), operands[i].components.end());
+      if (!lists[i].empty()) operands[i].components = lists[i];
+    }
+    code.emplace(kernel, native::Call{operands, call.domain, call.tables, call.part, call.isSilent}, choice);
+  }
+
+  std::vector<native::Operand> operands;
+  std::vector<std::vector<void*>>
+      lists;  ///< the arrays of each operand: those of a stream may move to another stream
+  std::optional<CodeRun> code;
+};
+
+BoxCode::BoxCode(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
+    : state_(std::make_unique<State>(kernel, call, choice)) {}
+BoxCode::~BoxCode() = default;
+
+bool BoxCode::hasArraysOf(const native::Call& call) const {
+  return std::ranges::equal(call.operands, state_->lists,
+                            [](const native::Operand& operand, const std::vector<void*>& list) {
+                              return std::ranges::equal(operand.components, list);
+                            });
+}
+
+bool BoxCode::hasBorders() const { return state_->code->hasBorders(); }
+void BoxCode::run(const native::Part& box) const { state_->code->runBox(box); }
 
 }  // namespace sk

@@ -42,4 +42,26 @@ class RepeatedCode {
   std::size_t last_ = 0;
 };
 
+/// A kernel's call of which threads compute boxes, each in its own order (native/time_tiles.hpp). It has neither variable nor
+/// scatter outputs.
+class BoxCode {
+ public:
+  /// Copies the operands, which name arrays that must outlive it. Dimensions of the call must not have been coalesced.
+  BoxCode(const program::Kernel& kernel, const native::Call& call, const CodeChoice& choice);
+  ~BoxCode();
+  BoxCode(const BoxCode&) = delete;
+  BoxCode& operator=(const BoxCode&) = delete;
+
+  /// True if the operands of the call have the same arrays as here.
+  bool hasArraysOf(const native::Call& call) const;
+  /// True if gathers have border values, which were read when this was made.
+  bool hasBorders() const;
+  /// Computes the elements of a box of the domain. May be called by several threads at once.
+  void run(const native::Part& box) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 }  // namespace sk

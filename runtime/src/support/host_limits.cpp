@@ -172,4 +172,12 @@ HostMemory hostMemory(const fs::path& root) {
   return memory;
 }
 
+std::int64_t bytesOfCache([[maybe_unused]] int level) {
+#if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
+  return std::max<std::int64_t>(sysconf(level == 2 ? _SC_LEVEL2_CACHE_SIZE : _SC_LEVEL3_CACHE_SIZE), 0);
+#else
+  return 0;
+#endif
+}
+
 }  // namespace sk

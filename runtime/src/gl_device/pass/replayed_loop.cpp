@@ -50,6 +50,12 @@ class ReplayedLoop final : public LoopRunner {
     }
   }
 
+  std::string plan(LoopState& loop) override {
+    return fmt::format(
+        "{} calls, whose OpenGL commands are recorded and repeated{}\n", loop.calls().size(),
+        mayReplay() ? "" : ", which tracing, labels or calls with changing commands prevent here");
+  }
+
   std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) override {
     const bool isExact = device_.capabilities.hasCompute || device_.isSoftware();
     const std::int64_t every = isExact ? 1 : end.every;
