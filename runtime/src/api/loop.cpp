@@ -76,6 +76,7 @@ void Loop::repeat(std::int64_t times) {
     LoopState& loop = stateOf(state_);
     if (times < 0) throw Error(fmt::format("repeat: times is {}; give 0 or more", times));
     const TraceScope traced(loop.device().trace.get(), "call", "loop");
+    if (loop.device().trace) traced.add("plan", loop.plan());
     loop.run(times);
   });
 }

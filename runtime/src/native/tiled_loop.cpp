@@ -111,7 +111,11 @@ class TiledLoop final : public LoopRunner {
         const std::int64_t atOnce = groups_.front().choice->iterations;
         const std::int64_t blocks = (times - last + atOnce - 1) / atOnce;
         const std::int64_t now = (times - last + blocks - 1) / blocks;  // blocks of about equal length
-        runTiles(loop, groups_.front(), now);
+        if (now == 1 && groups_.front().calls.size() == 1) {
+          loop.runOnce();
+        } else {
+          runTiles(loop, groups_.front(), now);
+        }
         times -= now;
       }
       for (; times > 0; --times) loop.runOnce();
@@ -162,7 +166,10 @@ class TiledLoop final : public LoopRunner {
 };
 
 void TiledLoop::analyse(LoopState& loop) {
-  if (std::exchange(isAnalysed_, true)) return;
+  if (isAnalysed_) return;
+  calls_.clear();  // of an attempt that has thrown
+  groups_.clear();
+  spansIterations_ = false;
   for (const std::unique_ptr<RecordedCall>& recorded : loop.calls()) {
     Call& call = calls_.emplace_back();
     const auto* const run = dynamic_cast<const PreparedRun*>(recorded->onDevice());
@@ -176,6 +183,7 @@ void TiledLoop::analyse(LoopState& loop) {
   }
   findIdle(loop);
   findGroups(loop);
+  isAnalysed_ = true;
 }
 
 /// Finds calls whose results nothing in the loop uses, and that write them anew in each iteration.
