@@ -11,8 +11,10 @@
 
 #include "native/call.hpp"
 #include "native/chunk_runner.hpp"
+#include "native/coalesce.hpp"
 #include "native/components.hpp"
 #include "native/memory.hpp"
+#include "native/padded_rows.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/variable_outputs.hpp"
@@ -104,113 +106,11 @@ class RowBlocks {
   std::int64_t perColumn_, perRow_;
 };
 
-// Copies of gathers whose rows lie a multiple of half a page apart. Elements below each other in such a matrix share a
-// few sets of the caches, so that a column of it evicts itself: a product of matrices of 1024 x 1024 took twice as
-// long as one of 1056 x 1056. In the copy, each row begins two cache lines later than the row before it.
-
-/// The copies for one call of a RunRows entry: those gathers that all of its rows read (Code::sharedGathers), if
-/// enough blocks of rows read them to make up for the copy.
-class PaddedRows {
- public:
-  /// `rows` is the number of rows that the entry computes together. What the operands point to must outlive this.
-  PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows);
-
-  bool isEmpty() const { return copies_.empty(); }
-  /// Copies the gathers' elements, on all threads, and lets the frame read the copies. Throws NoMemory.
-  void copyInto(CodeFrame& frame);
-
- private:
-  struct Copy {
-    std::size_t parameter;
-    native::Operand from;
-    std::vector<std::size_t> bytes;  ///< of each scalar
-    native::Extents stride;  ///< of the copy
-    std::vector<ArrayMemory> memory;
-    std::vector<void*> arrays;
-  };
-  static void copyRows(const Copy& copy, std::size_t scalar);
-
-  std::vector<Copy> copies_;
-};
-
 using native::Deal;
 using native::Extents;
 using native::Range;
 using program::Kernel;
 using program::Role;
-
-constexpr std::int64_t padding = 2 * cacheLine;
-
-std::int64_t rowsOf(const native::Operand& from) { return from.extent[1] * from.extent[2] * from.extent[3]; }
-
-/// True if the rows of some scalar's array share few sets of a cache, and do not all fit there.
-bool hasConflicts(const native::Operand& from, const std::vector<std::size_t>& bytes) {
-  constexpr std::int64_t halfPage = 2048;
-  constexpr std::int64_t enough = 1 << 20;  // half of a core's second-level cache
-  return std::ranges::any_of(bytes, [&](std::size_t size) {
-    const std::int64_t pitch = from.stride[1] * static_cast<std::int64_t>(size);
-    return pitch % halfPage == 0 && rowsOf(from) * pitch >= enough;
-  });
-}
-
-/// True if copying takes little time beside the call: many blocks of rows read the gather, and it is not much larger than
-/// the domain, whose elements are all computed.
-bool pays(const native::Operand& from, const Extents& domain, std::int64_t rows) {
-  constexpr std::int64_t fewestBlocks = 16;
-  constexpr std::int64_t mostPerElement = 4;
-  const std::int64_t elements = domain[0] * domain[1] * domain[2] * domain[3];
-  return domain[1] >= fewestBlocks * rows && from.extent[0] * rowsOf(from) <= mostPerElement * elements;
-}
-
-PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows) {
-  for (std::size_t i = 0; i < std::min<std::size_t>(call.operands.size(), 64); ++i) {
-    const native::Operand& from = call.operands[i];
-    if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held) continue;
-    std::vector<std::size_t> bytes;
-    forEachScalar(*kernel.parameters[i].element, RealType::Float,
-                  [&](std::size_t, std::size_t size, auto) { bytes.push_back(size); });
-    if (!hasConflicts(from, bytes) || !pays(from, call.domain, rows)) continue;
-    const auto largest = static_cast<std::int64_t>(std::ranges::max(bytes));
-    const std::int64_t pitch = from.extent[0] + padding / largest;
-    const std::int64_t plane = pitch * from.extent[1];
-    copies_.push_back({i, from, std::move(bytes), {1, pitch, plane, plane * from.extent[2]}, {}, {}});
-  }
-}
-
-void PaddedRows::copyInto(CodeFrame& frame) {
-  for (Copy& copy : copies_) {
-    if (copy.memory.empty()) {
-      for (const std::size_t bytes : copy.bytes) {
-        const std::int64_t elements = copy.stride[3] * copy.from.extent[3];
-        copy.memory.push_back(allocated(static_cast<std::size_t>(elements) * bytes));
-        copy.arrays.push_back(copy.memory.back().get());
-      }
-      native::Operand to = copy.from;
-      to.components = copy.arrays;
-      to.first = 0;
-      to.stride = copy.stride;
-      frame.redirect(copy.parameter, to);
-    }
-    for (std::size_t scalar = 0; scalar < copy.bytes.size(); ++scalar) copyRows(copy, scalar);
-  }
-}
-
-void PaddedRows::copyRows(const Copy& copy, std::size_t scalar) {
-  const native::Operand& from = copy.from;
-  const auto bytes = static_cast<std::int64_t>(copy.bytes[scalar]);
-  const auto* const source = static_cast<const std::byte*>(from.components[scalar]);
-  std::byte* const target = copy.memory[scalar].get();
-  native::inParallel(rowsOf(from), from.extent[0], native::Deal::Evenly, [&](native::Range range) {
-    for (std::int64_t row = range.begin; row < range.end; ++row) {
-      const std::int64_t y = row % from.extent[1];
-      const std::int64_t z = row / from.extent[1] % from.extent[2];
-      const std::int64_t w = row / from.extent[1] / from.extent[2];
-      const std::int64_t first = from.first + y * from.stride[1] + z * from.stride[2] + w * from.stride[3];
-      std::memcpy(target + row * copy.stride[1] * bytes, source + first * bytes,
-                  static_cast<std::size_t>(from.extent[0] * bytes));
-    }
-  });
-}
 
 /// One kernel over one domain.
 class CodeRun {
@@ -564,12 +464,37 @@ struct BoxCode::State {
       if (!lists[i].empty()) operands[i].components = lists[i];
     }
     code.emplace(kernel, native::Call{operands, call.domain, call.tables, call.part, call.isSilent}, choice);
+    domain = call.domain;
+    if (call.part) return;
+    inLine = operands;
+    Extents merged = domain, block = domain;
+    coalesce(kernel, inLine, merged, block);
+    const std::int64_t elements = domain[0] * domain[1] * domain[2] * domain[3];
+    if (merged != domain && merged[0] == elements)
+      line.emplace(kernel, native::Call{inLine, merged, call.tables, {}, call.isSilent}, choice);
+  }
+
+  void run(const native::Part& box) const {
+    std::size_t slowest = 3;
+    while (slowest > 0 && box.extent[slowest] == 1) --slowest;
+    bool isInLine = line.has_value();
+    std::int64_t first = 0, count = 1;
+    for (std::size_t d = domain.size(); d-- > 0;) {
+      isInLine = isInLine && (d >= slowest || box.extent[d] == domain[d]);
+      first = first * domain[d] + box.first[d];
+      count *= box.extent[d];
+    }
+    isInLine ? line->runBox({{first, 0, 0, 0}, {count, 1, 1, 1}}) : code->runBox(box);
   }
 
   std::vector<native::Operand> operands;
   std::vector<std::vector<void*>>
       lists;  ///< the arrays of each operand: those of a stream may move to another stream
   std::optional<CodeRun> code;
+  Extents domain{};
+  /// The same for elements in one row, if the kernel does not care: rows below each other are computed together then.
+  std::vector<native::Operand> inLine;
+  std::optional<CodeRun> line;
 };
 
 BoxCode::BoxCode(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
@@ -584,6 +509,6 @@ bool BoxCode::hasArraysOf(const native::Call& call) const {
 }
 
 bool BoxCode::hasBorders() const { return state_->code->hasBorders(); }
-void BoxCode::run(const native::Part& box) const { state_->code->runBox(box); }
+void BoxCode::run(const native::Part& box) const { state_->run(box); }
 
 }  // namespace sk
