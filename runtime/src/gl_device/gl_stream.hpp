@@ -70,7 +70,7 @@ class GlStream final : public StreamState {
   static Layout withSize(Layout list, std::int32_t count);
 
   void setWritten() noexcept override;
-  bool wasWrittenIn(std::int64_t period) const { return period_ == period; }
+  bool wasWrittenSince(std::int64_t period) const { return period_ >= period; }
 
  private:
   friend class GlDevice;
