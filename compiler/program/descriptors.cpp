@@ -75,10 +75,9 @@ void add(const Kernel& kernel, const Expr& expr, std::vector<ConditionStep>& ste
 }
 
 /// Whether one element may take so many iterations of loops that those of a packed texel, or of the 1024 elements of a row that one
-/// invocation folds, could exceed the 65,535 of Mesa's llvmpipe (runtime/src/assemble/glsl/loop_check.glsl). A kernel's texels are
-/// then not packed, which saves nothing: such loops take far longer than the texel.
+/// invocation folds, could exceed the 65,535 of Mesa's llvmpipe (runtime/src/assemble/glsl/loop_check.glsl).
 bool takesManyIterations(const Module& module, const Kernel& kernel) {
-  const std::int64_t many = kernel.reduction ? 50 : 200;
+  const std::int64_t many = kernel.reduction ? 50 : 15000;
   return analysis::mostIterations(module, kernel).value_or(many + 1) > many;
 }
 

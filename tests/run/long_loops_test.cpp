@@ -69,6 +69,9 @@ TEST_CASE("every device runs 65,000 iterations for an element") {
          s = device.stream<std::uint32_t>({37});
     long_loops::constant(x, r);
     CHECK(r.read() == mapped(starts(), [](std::uint32_t h) { return after(40000, h); }));
+    auto four = streamOf(device, starts(40)), to = device.stream<std::uint32_t>({40});
+    long_loops::packed(four, to);
+    CHECK(to.read() == mapped(starts(40), [](std::uint32_t h) { return after(14990, h); }));
     long_loops::uniformBound(65000, x, r);
     CHECK(r.read() == mapped(starts(), [](std::uint32_t h) { return after(65000, h); }));
     long_loops::twoLoops(x, r, s);

@@ -75,6 +75,7 @@ class GlStream final : public StreamState {
  private:
   friend class GlDevice;
   GlDevice& owner() const;
+  void throwLoopReport();
   bool writesThroughBuffer(const StreamRegion& region) const;
   /// Transfer all elements of a region, of type held(), from and to host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered);

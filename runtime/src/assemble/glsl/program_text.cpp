@@ -259,7 +259,9 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   addForeign(program, more);
   if (!hasLoopCheck) return program + main;
   program += library::loopCheckBegin;
-  return program + main + std::string(library::loopCheckEnd);
+  program += main;
+  program += isDrawn() ? library::loopCheckOfDraw : library::loopCheckOfDispatch;
+  return program + std::string(library::loopCheckEnd);
 }
 
 std::string ProgramText::ownText() const {

@@ -29,6 +29,8 @@ class LoopReports {
   void repeat(GlContext& context) {
     if (!kernels_.empty()) open(context);
   }
+  /// Whether programs that report have run since take().
+  bool isOpen() const { return isOpen_; }
   struct Report {
     std::string_view kernel;  ///< empty: no loop has been ended early
     std::int64_t period = 0;  ///< streams that were written before it are right (GlContext::period())
@@ -42,7 +44,7 @@ class LoopReports {
   }
 
   std::vector<std::string> kernels_;
-  bool isOpen_ = false;  ///< programs that report have run since take()
+  bool isOpen_ = false;
   std::int64_t period_ = 0;  ///< began with the first of them
   gl::LoopCheck check_;
 };
