@@ -15,17 +15,17 @@ void LoopCheck::bind(BoundState& bound) {
   bound.loopStorage(buffer_.get());
 }
 
-std::int32_t LoopCheck::take(BoundState& bound) {
-  std::int32_t number = 0;
-  if (!buffer_) return number;
+std::optional<std::int32_t> LoopCheck::take(BoundState& bound) {
+  std::optional<std::int32_t> number;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   bound.withSelected(buffer_.get(), [&] {
-    void* const reported =
-        glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, sizeof number, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
-    if (reported == nullptr) return;  // the driver's error says why
+    void* const reported = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, sizeof(std::int32_t),
+                                            GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+    if (reported == nullptr) return;
     number = std::exchange(*static_cast<std::int32_t*>(reported), 0);
     glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
   });
+  if (!number) buffer_ = {};  // perhaps it has never had its bytes; bind() creates another
   return number;
 }
 

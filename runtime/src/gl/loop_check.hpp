@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "gl/bound_state.hpp"
 #include "gl/buffer.hpp"
@@ -17,7 +18,8 @@ class LoopCheck {
   /// Binds the buffer at binding 1; creates it on first use.
   void bind(BoundState& bound);
   /// What the programs have reported since the last call: the number of one of those that were cut short, or 0. Waits for them.
-  std::int32_t take(BoundState& bound);
+  /// Nullopt if the driver does not map the buffer.
+  std::optional<std::int32_t> take(BoundState& bound);
 
  private:
   ObjectName<deleteBuffer> buffer_;

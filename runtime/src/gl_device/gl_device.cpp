@@ -214,8 +214,9 @@ void GlDevice::throwPendingError() {
             capabilities.renderer, gl::errorName(error)),
         error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
   }
-  if (cut.kernel.empty()) return;
+  if (cut.kernel.empty() && cut.isKnown) return;
   loseStreamsSince(cut.period);
+  if (!cut.isKnown) context_.failForMemory("what programs report of their loops");
   throw Error(
       fmt::format("{}: the driver of '{}' ends the loops of an element, and of those that are computed with "
                   "it, after "

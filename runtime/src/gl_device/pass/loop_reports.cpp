@@ -2,6 +2,7 @@
 #include "gl_device/pass/loop_reports.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace sk {
 
@@ -13,9 +14,10 @@ std::int32_t LoopReports::numberOf(std::string_view kernel) {
 
 LoopReports::Report LoopReports::take(gl::BoundState& bound) {
   if (!std::exchange(isOpen_, false)) return {};
-  const std::int32_t number = check_.take(bound);
-  if (number <= 0) return {};
-  return {kernels_[static_cast<std::size_t>(number) - 1], period_};
+  const std::optional<std::int32_t> number = check_.take(bound);
+  if (!number) return {{}, period_, false};
+  if (*number <= 0) return {};
+  return {kernels_[static_cast<std::size_t>(*number) - 1], period_};
 }
 
 }  // namespace sk

@@ -34,6 +34,7 @@ class LoopReports {
   struct Report {
     std::string_view kernel;  ///< empty: no loop has been ended early
     std::int64_t period = 0;  ///< streams that were written before it are right (GlContext::period())
+    bool isKnown = true;  ///< false if the driver has failed
   };
   /// What has been reported since the last call. Waits for the device if programs that report have run.
   Report take(gl::BoundState& bound);
