@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/iterations.hpp"
 #include "analysis/stream_uses.hpp"
 #include "glsl/body.hpp"
 #include "glsl/legalize.hpp"
@@ -71,6 +72,13 @@ void add(const Kernel& kernel, const Expr& expr, std::vector<ConditionStep>& ste
     add(kernel, *binary.rhs, steps);
     steps.push_back({opOf(binary.op), static_cast<sk::program::Scalar>(binary.lhs->type.scalar)});
   }
+}
+
+/// Whether one element may take so many iterations of loops that those of a packed texel, or of the 1024 elements of a row that one
+/// invocation folds, could exceed the 65,535 of Mesa's llvmpipe (runtime/src/assemble/glsl/loop_check.glsl).
+bool takesManyIterations(const Module& module, const Kernel& kernel) {
+  const std::int64_t many = kernel.reduction ? 50 : 15000;
+  return analysis::mostIterations(module, kernel).value_or(many + 1) > many;
 }
 
 std::vector<ConditionStep> conditionSteps(const Kernel& kernel, const Expr& condition) {
@@ -250,7 +258,7 @@ class Builder {
             .sources = sources_,
             .usesIndex = uses.domainIndex,
             .usesExtent = uses.domainExtent,
-            .usesLoops = uses.loops,
+            .usesLoops = uses.loops || takesManyIterations(given_, given_.kernels[id]),
             .usesDoubles = usesDoubles(module_, kernel),
             .usesLongs = usesLongs(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),

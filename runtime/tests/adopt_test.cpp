@@ -307,8 +307,9 @@ TEST_CASE("the buffers of the application's programs are theirs again after a re
   } else {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers[0]);
   }
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers[1]);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[1]);
-  Device device = Device::adopt({.profile = "glsl430"});
+  Device device = Device::adopt({.profile = GENERATE("glsl430", "glsl330")});
   auto ones = device.stream<float>({100, 7});
   ones.write(std::vector<float>(700, 1.0f));
   CHECK(sumOfFloats().value<float>(ones) == 700);
@@ -318,6 +319,14 @@ TEST_CASE("the buffers of the application's programs are theirs again after a re
   glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &start);
   glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &size);
   CHECK(first == static_cast<GLint>(buffers[0]));
+  static const TestKernel counting(
+      "counting", "void counting(float x, out float r) { r = 0.0; while (r < x) r += 1.0; }\n",
+      {input<float>("x"), output<float>("r")});
+  auto counted = device.stream<float>({100, 7});
+  counting(ones, counted);
+  CHECK(counted.read() == std::vector<float>(700, 1.0f));
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 1, &first);
+  CHECK(first == static_cast<GLint>(buffers[1]));
   CHECK(start == (isPart ? 256 : 0));
   CHECK(size == (isPart ? 512 : 0));
   CHECK(integerOf(GL_SHADER_STORAGE_BUFFER_BINDING) == static_cast<GLint>(buffers[1]));

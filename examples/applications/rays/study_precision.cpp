@@ -138,24 +138,23 @@ Findings studyPrecision(sk::Device& device, bool isSmall) {
 
 Findings studySums(sk::Device& device, bool isSmall) {
   const int sums = isSmall ? 64 : 1024;
-  constexpr int count = 1'000'000;
+  constexpr int count = 1'000'000, ofCall = 50'000;
   examples::Table table({"a million samples", "floats", "compensated", "doubles"});
   examples::Verification kept("mean error of compensated sums and of doubles", 0x1p-24,
                               "half a unit of the float that holds the mean");
   const std::array<std::string_view, 3> kinds = {"0.1 each", "independent, from 0 to 1",
                                                  "one of 100,000, then from 0 to 0.01"};
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    auto plain = device.stream<float>({sums}), compensated = device.stream<float>({sums});
-    auto wide = device.stream<double>({sums});
-    kernels::addMany(static_cast<unsigned>(kind), count, 17u, sk::iter(0, sums), plain, compensated, wide);
-    const std::vector<float> floats = plain.read(), kahan = compensated.read();
-    const std::vector<double> doubles = wide.read();
+    auto added = device.stream<kernels::Sums>({sums});
+    kernels::startSums(17u, sk::iter(0, sums), added);
+    for (int first = 0; first < count; first += ofCall)
+      kernels::addMany(static_cast<unsigned>(kind), first, ofCall, added, added);
     double ofFloats = 0.0, ofKahan = 0.0, ofDoubles = 0.0;
-    for (std::size_t i = 0; i < doubles.size(); ++i) {
-      ofFloats += (floats[i] / doubles[i] - 1) / sums;
-      ofKahan += (kahan[i] / doubles[i] - 1) / sums;
+    for (const kernels::Sums& sum : added.read()) {
+      ofFloats += (sum.plain / sum.wide - 1) / sums;
+      ofKahan += (sum.compensated / sum.wide - 1) / sums;
       // As a picture holds it.
-      ofDoubles += (static_cast<float>(doubles[i] / count) * double(count) / doubles[i] - 1) / sums;
+      ofDoubles += (static_cast<float>(sum.wide / count) * double(count) / sum.wide - 1) / sums;
     }
     kept.note(static_cast<std::int64_t>(kind), std::abs(ofKahan));
     kept.note(static_cast<std::int64_t>(kind), std::abs(ofDoubles));

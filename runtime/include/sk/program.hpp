@@ -273,8 +273,9 @@ struct Kernel {
   std::span<const std::string_view> sources;  ///< source file of string number i + 1 in #line
   bool usesIndex = false;  ///< the body calls sk_index()
   bool usesExtent = false;  ///< the body calls sk_extent()
-  /// The body has a loop: main() then returns early in helper invocations outside the domain, where undefined
-  /// inputs might keep the loop from ending.
+  /// The body has a loop that may take many iterations: its number depends on data, or is large. main() then returns early in
+  /// helper invocations outside the domain, where undefined inputs might keep the loop from ending, no texel is packed, and
+  /// devices that end long loops check that they have not (assemble/glsl/loop_check.glsl).
   bool usesLoops = false;
   bool usesDoubles = false;  ///< declarations or body use sk_double
   bool usesLongs = false;  ///< declarations or body use sk_long or sk_ulong

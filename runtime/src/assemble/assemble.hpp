@@ -58,6 +58,8 @@ struct Profile {
   bool samples = false;
   /// Uniforms come from the vertex program (relayed_values.hpp), which is faster in software renderers.
   bool relaysUniforms = false;
+  /// Programs with loops that may take many iterations report if the driver has ended them early (glsl/loop_check.glsl).
+  bool checksLoops = false;
   /// Where GLSL has umulExtended, it may be called: with a literal 0xffffffff, LLVM 15 brings llvmpipe down.
   bool highProducts = true;
 };

@@ -34,7 +34,7 @@ void BoundState::forget() {
   activeUnit_ = -1;
   textures_ = arrayTextures_ = samplers_ = unknownUnits();
   images_ = unknownUnits<maxImageUnits>();
-  storage_ = unknown;
+  storage_ = loopStorage_ = unknown;
 }
 
 void BoundState::forgetProgram(GLuint name) {
@@ -57,6 +57,7 @@ void BoundState::forgetFramebuffer(GLuint name) {
 void BoundState::forgetStorage(GLuint name) {
   for (CommandLog* const log : kept_) log->forgetStorage(name);
   if (storage_ == name) storage_ = unknown;
+  if (loopStorage_ == name) loopStorage_ = unknown;
 }
 
 void BoundState::bindImage(int unit, GLuint name, GLenum format, GLenum access) {
@@ -86,30 +87,53 @@ void BoundState::bindStorage(GLuint name) {
   storage_ = name;
 }
 
+void BoundState::bindLoopStorage(GLuint name) {
+  keepStorage();
+  if (isApplications_ && !std::exchange(keptStorage_.isLoopsKept, true)) keptStorage_.loops = rangeAt(1);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, name);
+  loopStorage_ = name;
+  reselectStorage();
+}
+
+/// Binds the buffer at binding 0 at the generic binding again. If it is not known, it will be bound before it is used.
+void BoundState::reselectStorage() {
+  if (storage_ != unknown) glBindBuffer(GL_SHADER_STORAGE_BUFFER, storage_);
+}
+
 /// Saves the application's buffer at binding 0 and at the generic binding before their first change.
 void BoundState::keepStorage() {
   if (!isApplications_ || keptStorage_.kept) {
     return;
   }
   glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &keptStorage_.selected);
-  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &keptStorage_.name);
-  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &keptStorage_.start);
-  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &keptStorage_.size);
+  keptStorage_.first = rangeAt(0);
   keptStorage_.kept = true;
 }
 
-/// A size of 0 stands for the whole buffer.
+BoundState::KeptRange BoundState::rangeAt(GLuint binding) {
+  KeptRange range;
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, binding, &range.name);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, binding, &range.start);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, binding, &range.size);
+  return range;
+}
+
+void BoundState::restoreAt(GLuint binding, const KeptRange& range) {
+  const auto name = static_cast<GLuint>(range.name);
+  if (range.size == 0) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name);
+  } else {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, name, static_cast<GLintptr>(range.start),
+                      static_cast<GLsizeiptr>(range.size));
+  }
+}
+
 void BoundState::restoreStorage() {
   if (!keptStorage_.kept) {
     return;
   }
-  const auto name = static_cast<GLuint>(keptStorage_.name);
-  if (keptStorage_.size == 0) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, name);
-  } else {
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, name, static_cast<GLintptr>(keptStorage_.start),
-                      static_cast<GLsizeiptr>(keptStorage_.size));
-  }
+  restoreAt(0, keptStorage_.first);
+  if (keptStorage_.isLoopsKept) restoreAt(1, keptStorage_.loops);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(keptStorage_.selected));
   keptStorage_ = {};
 }

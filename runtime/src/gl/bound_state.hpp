@@ -86,6 +86,19 @@ class BoundState {
       bindStorage(name);
     }
   }
+  /// Binds the buffer of LoopCheck at binding 1, and leaves the generic binding as it is.
+  void loopStorage(GLuint name) {
+    note({.kind = Command::Kind::LoopStorage, .name = name});
+    if (loopStorage_ != name) bindLoopStorage(name);
+  }
+  /// Calls `use` while a buffer is at the generic binding, through which its bytes are read.
+  template <class Use>
+  void withSelected(GLuint name, Use&& use) {
+    keepStorage();
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+    use();
+    reselectStorage();
+  }
   /// Binds a texture for changes by glTexImage2D and similar functions: on unit 0, which becomes the active
   /// one.
   void textureToChange(GLuint name, bool isArray) {
@@ -155,6 +168,8 @@ class BoundState {
   void bindImage(int unit, GLuint name, GLenum format, GLenum access);
   void keepImage(std::size_t unit);
   void bindStorage(GLuint name);
+  void bindLoopStorage(GLuint name);
+  void reselectStorage();
   void keepStorage();
   void restoreStorage();
   void activateUnit(int unit);
@@ -171,11 +186,17 @@ class BoundState {
     bool kept = false;
     GLint name = 0, level = 0, isLayered = 0, layer = 0, access = 0, format = 0;
   };
-  struct KeptStorage {
-    bool kept = false;
-    GLint name = 0, selected = 0;
-    GLint64 start = 0, size = 0;
+  struct KeptRange {
+    GLint name = 0;
+    GLint64 start = 0, size = 0;  ///< a size of 0 stands for the whole buffer
   };
+  struct KeptStorage {
+    bool kept = false, isLoopsKept = false;
+    GLint selected = 0;
+    KeptRange first, loops;  ///< at bindings 0 and 1
+  };
+  static KeptRange rangeAt(GLuint binding);
+  static void restoreAt(GLuint binding, const KeptRange& range);
   // No object has this name, so that the next binding is never skipped.
   static constexpr GLuint unknown = ~GLuint{0};
   template <std::size_t count = maxTextureUnits>
@@ -198,6 +219,7 @@ class BoundState {
   std::array<GLuint, maxTextureUnits> samplers_ = unknownUnits();
   std::array<GLuint, maxImageUnits> images_ = unknownUnits<maxImageUnits>();
   GLuint storage_ = unknown;
+  GLuint loopStorage_ = unknown;
   bool isApplications_ = false;
   bool hasManyViewports_ = false;
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};

@@ -48,6 +48,17 @@ void readCompute(Capabilities& found) {
   }
 }
 
+/// Fragment programs of GLSL 3.30, and of ESSL 3.10.
+bool storesFromDraws(const Capabilities& found) {
+  const bool isGl = found.api == Api::Gl;
+  if (isGl ? found.version < 43 && !(epoxy_has_gl_extension("GL_ARB_shader_storage_buffer_object") &&
+                                     epoxy_has_gl_extension("GL_ARB_shading_language_420pack"))
+           : found.version < 31)
+    return false;
+  return integerOf(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS) >= 2 &&
+         integerOf(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS) >= 2;
+}
+
 std::vector<GLenum> binaryFormats(const Capabilities& found) {
   if (found.api == Api::Gl && found.version < 41 && !epoxy_has_gl_extension("GL_ARB_get_program_binary")) {
     return {};
@@ -107,6 +118,7 @@ Capabilities readCapabilities() {
   found.uniformComponents = found.api == Api::Gl ? integerOf(GL_MAX_FRAGMENT_UNIFORM_COMPONENTS)
                                                  : 4 * integerOf(GL_MAX_FRAGMENT_UNIFORM_VECTORS);
   readCompute(found);
+  found.storesFromDraws = storesFromDraws(found);
   return found;
 }
 

@@ -29,6 +29,7 @@ struct Capabilities {
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;  ///< can filter 32-bit floats linearly
   bool hasCompute = false;  ///< has compute programs of GLSL 4.30, within the limits below
+  bool storesFromDraws = false;  ///< fragment programs write buffers at bindings 0 and 1
   bool mapsStorage = false;  ///< maps buffers while programs use them
   bool hasClipControl = false;  ///< the origin of y can be chosen
   bool hasLabels = false;  ///< has names of objects for debuggers (KHR_debug)

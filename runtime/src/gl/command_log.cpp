@@ -57,6 +57,7 @@ void CommandLog::give(BoundState& bound, const Command& command, const IndirectC
     case CommandKind::Sampler: return bound.sampler(command.unit, command.name);
     case CommandKind::Image: return bound.image(command.unit, command.name, command.format);
     case CommandKind::Storage: return bound.keptStorage(command.name);
+    case CommandKind::LoopStorage: return bound.loopStorage(command.name);
     case CommandKind::Framebuffer: return bound.framebuffer(command.name);
     case CommandKind::Viewport: return bound.viewport(numbers[0], numbers[1], numbers[2], numbers[3]);
     case CommandKind::Ints: return static_cast<IntUniform*>(command.uniform)->set(bound, numbers);

@@ -31,6 +31,7 @@ struct Command {
     Sampler,
     Image,
     Storage,  ///< a buffer that programs read and write
+    LoopStorage,  ///< that of a LoopCheck
     Framebuffer,  ///< for drawing and reading
     Viewport,
     Ints,
@@ -78,7 +79,9 @@ class CommandLog {
     forget(name, {Command::Kind::Texture, Command::Kind::ArrayTexture, Command::Kind::Image});
   }
   void forgetFramebuffer(GLuint name) noexcept { forget(name, {Command::Kind::Framebuffer}); }
-  void forgetStorage(GLuint name) noexcept { forget(name, {Command::Kind::Storage}); }
+  void forgetStorage(GLuint name) noexcept {
+    forget(name, {Command::Kind::Storage, Command::Kind::LoopStorage});
+  }
   /// Whether an object that a command refers to has been deleted.
   bool isStale() const { return isStale_; }
 

@@ -23,6 +23,7 @@ TEST_CASE("a log is stale once an object that it names is deleted") {
     one->note({.kind = Kind::Image, .name = 4});
     one->note({.kind = Kind::Framebuffer, .name = 5});
     one->note({.kind = Kind::Storage, .name = 6});
+    one->note({.kind = Kind::LoopStorage, .name = 7});
     bound.keep(*one);
   }
   bound.drop(dropped);
@@ -37,6 +38,7 @@ TEST_CASE("a log is stale once an object that it names is deleted") {
   SECTION("an image") { bound.forgetTexture(4); }
   SECTION("a framebuffer") { bound.forgetFramebuffer(5); }
   SECTION("a buffer") { bound.forgetStorage(6); }
+  SECTION("the buffer of reports") { bound.forgetStorage(7); }
   CHECK(log.isStale());
   CHECK_FALSE(dropped.isStale());
 }

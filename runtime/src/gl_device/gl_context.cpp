@@ -36,9 +36,9 @@ void GlContext::failForMemory(std::string_view what) {
 
 // In a shared context, other errors than exhausted memory and a lost context may come of restoring what the application has
 // deleted.
-GLenum GlContext::endPeriod() {
+GLenum GlContext::takeError() {
   const GLenum error = bound_.errors.take();
-  ++period_;
+  unchecked_ = beginPeriod();
   const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   return isOurs ? error : GL_NO_ERROR;
 }

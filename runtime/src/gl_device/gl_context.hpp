@@ -47,11 +47,15 @@ class GlContext {
   /// Throws sk::Error after a failure for want of memory for `what`, unless a lost context explains it.
   [[noreturn]] void failForMemory(std::string_view what);
 
-  /// The number of the current period. A period ends whenever the driver's errors are queried: an error
-  /// breaks the streams that were written in it.
+  /// The number of the current period. Streams note in which one they were written: an error breaks those that were
+  /// written since unchecked(), or since the period in which it can have begun.
   std::int64_t period() const { return period_; }
-  /// Ends the period. Returns the driver's error if it concerns the streams that were written in it, else GL_NO_ERROR.
-  GLenum endPeriod();
+  /// The first period since the driver's errors were queried.
+  std::int64_t unchecked() const { return unchecked_; }
+  /// Begins a period, and returns its number.
+  std::int64_t beginPeriod() { return ++period_; }
+  /// Queries the driver's errors, and begins a period. Returns the driver's error if it concerns the streams that were written in it, else GL_NO_ERROR.
+  GLenum takeError();
 
   class Scope;
 
@@ -63,7 +67,7 @@ class GlContext {
   const bool isShared_;
   gl::BoundState bound_;
   gl::Labels labels_;
-  std::int64_t period_ = 1;
+  std::int64_t period_ = 1, unchecked_ = 1;
   bool isInScope_ = false;
 };
 

@@ -193,21 +193,38 @@ void GlDevice::makeCurrent() {
   if (!context_.handle().isCurrent()) context_.handle().makeCurrent();
 }
 
-void GlDevice::throwPendingError() {
-  if (PassTrace* const passes = passes_.trace()) passes->collect();
-  const std::int64_t unchecked = context_.period();
-  const GLenum error = context_.endPeriod();
-  if (error == GL_NO_ERROR) return;
-  context_.throwIfLost();
+void GlDevice::loseStreamsSince(std::int64_t period) {
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
-    if (stream.wasWrittenIn(unchecked)) stream.markLost();
+    if (stream.wasWrittenSince(period)) stream.markLost();
   }
+}
+
+void GlDevice::throwPendingError() {
+  if (PassTrace* const passes = passes_.trace()) passes->collect();
+  const std::int64_t unchecked = context_.unchecked();
+  const LoopReports::Report cut = passes_.loopReports().take(bound());
+  const GLenum error = context_.takeError();
+  if (error != GL_NO_ERROR) {
+    context_.throwIfLost();
+    loseStreamsSince(unchecked);
+    throw Error(
+        fmt::format(
+            "the driver of '{}' reports {}; the streams that were written since it was last asked are lost",
+            capabilities.renderer, gl::errorName(error)),
+        error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
+  }
+  if (cut.kernel.empty() && cut.isKnown) return;
+  loseStreamsSince(cut.period);
+  if (!cut.isKnown) context_.failForMemory("what programs report of their loops");
   throw Error(
-      fmt::format(
-          "the driver of '{}' reports {}; the streams that were written since it was last asked are lost",
-          capabilities.renderer, gl::errorName(error)),
-      error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
+      fmt::format("{}: the driver of '{}' ends the loops of an element, and of those that are computed with "
+                  "it, after "
+                  "65,000 iterations together, and one needs more; the streams that were written since then "
+                  "are lost; divide the iterations among several calls, or use another device "
+                  "(SK_DEVICE=native)",
+                  cut.kernel, capabilities.renderer),
+      Error::Kind::Device);
 }
 
 }  // namespace sk

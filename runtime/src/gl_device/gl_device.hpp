@@ -101,8 +101,8 @@ class GlDevice final : public DeviceState {
   /// need may be of any storage and device. `plan` has the passes of the kernel; null if one pass is enough.
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                      const assemble::SpecValues& specs, const program::Plan* plan = nullptr) const;
-  /// Throws sk::Error if the driver has reported an error since the last call. The streams that were written
-  /// since then are marked as broken.
+  /// Throws sk::Error if the driver has reported an error since the last call, or has ended loops early. The streams that were
+  /// written since then are marked as broken.
   void throwPendingError();
 
   const gl::Capabilities capabilities;
@@ -112,6 +112,8 @@ class GlDevice final : public DeviceState {
   const CacheFolder cache;  ///< what was measured of the device, and its programs
 
  private:
+  void loseStreamsSince(std::int64_t period);
+
   GlContext context_;
   GlMemory memory_{context_, trace};
   GlPrograms programs_;

@@ -17,6 +17,7 @@
 #include "gl/texture.hpp"
 #include "gl_device/gl_context.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
+#include "gl_device/pass/loop_reports.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/program.hpp"
 
@@ -82,6 +83,7 @@ class GlPasses {
   }
 
   gl::Samplers& samplers() { return samplers_; }
+  LoopReports& loopReports() { return loopReports_; }
 
   /// Binds a buffer with room for `bytes` bytes (gl::StorageBuffer::bind()); false if memory is exhausted.
   bool bind(PassBuffer which, std::size_t bytes) { return buffer(which).bind(context_.bound(), bytes); }
@@ -109,6 +111,7 @@ class GlPasses {
       gl::StorageBuffer(gl::StorageBuffer::Use::Persistent),
       gl::StorageBuffer(gl::StorageBuffer::Use::Scratch), gl::StorageBuffer(gl::StorageBuffer::Use::Scratch),
       gl::StorageBuffer(gl::StorageBuffer::Use::Scratch)};  ///< by PassBuffer
+  LoopReports loopReports_;
   KeptScratch<Operand> operands_;
   std::unique_ptr<PassTrace> trace_;
 };

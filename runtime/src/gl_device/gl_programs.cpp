@@ -30,6 +30,10 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   profile.samples = traits.samplesTexels;
   profile.relaysUniforms = traits.relaysUniforms && profile.stage == assemble::Stage::Fragment;
   profile.highProducts = !capabilities.isSoftware;
+  // The host of a virtual machine may render in software.
+  profile.checksLoops = capabilities.storesFromDraws &&
+                        (capabilities.isSoftware || capabilities.kind == gl::RendererKind::Virtual);
+  if (profile.checksLoops && profile.es) profile.version = "#version 310 es";
   return profile;
 }
 

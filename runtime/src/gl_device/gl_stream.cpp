@@ -457,14 +457,20 @@ void GlStream::exchangeElements(StreamState& other) noexcept {
   with.labelPlanes();
 }
 
+/// The application does not ask the device for errors before it draws from what it gets.
+void GlStream::throwLoopReport() {
+  if (owner().passes().loopReports().isOpen()) owner().throwPendingError();
+}
+
 StreamTexture GlStream::texture(int plane) {
   static_cast<void>(owner().context().living());
   if (planes.empty()) {
     return {};
   }
-  if (layout.whole.packed) {
+  if (layout.whole.packed || owner().passes().loopReports().isOpen()) {
     const DeviceScope scope(owner());
-    unpack();
+    throwLoopReport();
+    if (layout.whole.packed) unpack();
   }
   const gl::Texture& texture = planes[static_cast<std::size_t>(plane)].texture;
   const gl::TextureSize& extents = texture.size();
@@ -474,6 +480,7 @@ StreamTexture GlStream::texture(int plane) {
 
 void GlStream::fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) {
   const DeviceScope scope(owner());
+  throwLoopReport();
   const TransferRegion what = transferRegion({this, {}, shape});
   readToBuffer(owner(), planes[static_cast<std::size_t>(plane)], what.place, buffer,
                static_cast<std::size_t>(byteOffset));

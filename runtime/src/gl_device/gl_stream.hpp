@@ -70,11 +70,12 @@ class GlStream final : public StreamState {
   static Layout withSize(Layout list, std::int32_t count);
 
   void setWritten() noexcept override;
-  bool wasWrittenIn(std::int64_t period) const { return period_ == period; }
+  bool wasWrittenSince(std::int64_t period) const { return period_ >= period; }
 
  private:
   friend class GlDevice;
   GlDevice& owner() const;
+  void throwLoopReport();
   bool writesThroughBuffer(const StreamRegion& region) const;
   /// Transfer all elements of a region, of type held(), from and to host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered);

@@ -326,6 +326,7 @@ std::string GroupText::ofPushed(Text&& text) const {
 }
 
 void GroupText::finish() {
+  program_.takeManyIterations();  // an invocation runs the kernel for several texels
   program_.variable("bool", "sk_storing");
   if (variant_.task.work == Work::Groups) program_.statement("if (!sk_storing) return;");
   std::string text = fmt::format("\nlayout(local_size_x = {}) in;\n", appendGroup);

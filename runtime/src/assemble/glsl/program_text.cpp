@@ -15,6 +15,7 @@
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "glsl_text/functions.hpp"
+#include "glsl_text/loop_check.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -83,6 +84,13 @@ std::pair<int, int> groupForTexels(int components) {
   return components == 4 ? groupOfWideTexels : std::pair(16, 16);
 }
 
+/// What buffers that draws write take in GLSL 3.30. Profile::version has them in compute programs, and in ES.
+std::string_view loopCheckExtensions(const Profile& profile) {
+  if (profile.es || profile.stage == Stage::Compute) return {};
+  return "#extension GL_ARB_shader_storage_buffer_object : require\n"
+         "#extension GL_ARB_shading_language_420pack : require\n";
+}
+
 constexpr std::string_view esPrecision =
     "precision highp float;\n"
     "precision highp int;\n"
@@ -126,6 +134,7 @@ void ProgramText::foldTiles(std::pair<int, int> group, std::vector<std::string> 
   beforeTiles_ = std::move(before);
   afterTiles_ = std::move(after);
   groupOfTiles_ = group;
+  takeManyIterations();  // the number of tiles depends on the domain
 }
 
 std::pair<int, int> ProgramText::groupOfTexels() const {
@@ -227,6 +236,8 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile);
+  const bool hasLoopCheck = profile.checksLoops && (kernel.usesLoops || takesManyIterations_);
+  if (hasLoopCheck) program += loopCheckExtensions(profile);
   const auto multiplies = [](std::string_view text) {
     return text.find("sk_mulhi(") != std::string_view::npos;
   };
@@ -246,7 +257,11 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   program += bodyDefinitions(profile, body + more + main);
   addForeign(program, body);
   addForeign(program, more);
-  return program + main;
+  if (!hasLoopCheck) return program + main;
+  program += library::loopCheckBegin;
+  program += main;
+  program += isDrawn() ? library::loopCheckOfDraw : library::loopCheckOfDispatch;
+  return program + std::string(library::loopCheckEnd);
 }
 
 std::string ProgramText::ownText() const {

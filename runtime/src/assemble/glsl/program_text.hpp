@@ -148,6 +148,8 @@ class ProgramText {
   bool takeShared(std::size_t bytes);
   /// Adds text of skc after the kernel's own.
   void foreign(std::string_view text);
+  /// The program may take many iterations of loops, whatever its kernel says (Profile::checksLoops).
+  void takeManyIterations() { takesManyIterations_ = true; }
   /// What is stored as doubles and read as floats may be denormal floats, whatever the device makes of these.
   void keepDenormals() { keepsDenormals_ = true; }
   bool keepsDenormals() const { return keepsDenormals_; }
@@ -162,7 +164,6 @@ class ProgramText {
  private:
   std::string storeOf(std::size_t output, std::string_view place) const;
   void defineWith(std::string_view signature, std::string_view lines);
-
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
@@ -176,6 +177,7 @@ class ProgramText {
   std::string place_;  ///< of storeAt()
   std::string mainOfGroups_;  ///< of runFrom()
   bool keepsDenormals_ = false;
+  bool takesManyIterations_ = false;
   std::vector<std::string> beforeTiles_, afterTiles_;  ///< of foldTiles()
   std::pair<int, int> groupOfTiles_{};  ///< likewise; 0: it does not fold
   bool isArray_ = false;

@@ -322,6 +322,22 @@ TEST_CASE(
   checkAccepted(programs);
 }
 
+TEST_CASE("glslang accepts programs that report loops that have been ended early") {
+  Programs programs("loops");
+  Kernel kernel = samples::saxpy;
+  kernel.usesLoops = true;
+  Reduction sum = samples::sum;
+  sum.fold.usesLoops = true;
+  for (Profile profile : shownProfiles()) {
+    profile.checksLoops = true;
+    if (profile.es) profile.version = "#version 310 es";
+    programs.add(profile, kernelProgram(profile, kernel, {.access = {{}, {}, {}, {}}}));
+    programs.add(profile, reduceProgram(profile, sum, {.walk = Walk::Line}));
+  }
+  REQUIRE(programs.count() == 6);
+  checkAccepted(programs);
+}
+
 TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the vertex program") {
   Programs programs("plain");
   for (const Profile& profile : shownProfiles()) {

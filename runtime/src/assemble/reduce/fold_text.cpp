@@ -254,6 +254,7 @@ std::string FoldText::finish(std::string_view comment) {
   if (profile_.stage == Stage::Compute)
     program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
   if (variant_.toBuffer) program_.storeInBuffer();
+  if (reduction_.combine.usesLoops) program_.takeManyIterations();
   return program_.finish(profile_, fmt::format("{} for {}: {}", reduction_.fold.name, profile_.name, comment),
                          kernel_);
 }

@@ -129,6 +129,10 @@ void selectLayer(gl::BoundState& bound, const DrawTarget& target, std::int32_t l
 
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::Texture> stacks) {
+  if (program.loopNumber > 0) {
+    device.passes().loopReports().begin(device.context());
+    program.loopNumberUniform.set(device.bound(), program.loopNumber);
+  }
   int unit = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];

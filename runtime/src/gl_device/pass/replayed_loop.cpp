@@ -239,6 +239,7 @@ class ReplayedLoop final : public LoopRunner {
     const std::optional<std::size_t> first = next(loop);
     if (!first) return false;
     prepareToPlace(loop);
+    device_.passes().loopReports().repeat(device_.context());
     std::size_t at = *first;
     for (std::int64_t i = 0; i < times; ++i) {
       const bool isAgain = i >= static_cast<std::int64_t>(cycle_.size());
@@ -296,6 +297,7 @@ class ReplayedLoop final : public LoopRunner {
     const auto all = conditions(loop, done);
     if (!all) return std::nullopt;
     prepareToPlace(loop);
+    device_.passes().loopReports().repeat(device_.context());
     WriteScope writes;
     for (const LoopState::Used& used : loop.used()) writes.add(used.stream);
     std::string log;

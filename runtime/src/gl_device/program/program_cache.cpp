@@ -336,6 +336,11 @@ void ProgramCache::finish(KernelProgram& result, const program::Kernel& kernel, 
   device_.context().labels().program(result.program.name(), kernel.name);
   result.stage = profile_.stage;
   result.domainRow = {result.program.location("sk_domain_row"), false};
+  const GLint loopNumber = result.program.location("sk_loop_number");
+  if (loopNumber >= 0) {
+    result.loopNumber = device_.passes().loopReports().numberOf(kernel.name);
+    result.loopNumberUniform = {loopNumber, false};
+  }
   if (result.stage == assemble::Stage::Compute) {
     result.rect = {result.program.location("sk_rect"), true};
     result.workGroup = result.program.workGroup();
