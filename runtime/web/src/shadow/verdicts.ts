@@ -3,6 +3,7 @@
 // Concludes from the records of a page which kernel is to blame for what: runtime/src/shadow/report.cpp. No GL: Node tests it.
 import type { DecisionRecord, ExceptionRecord, Records, ResultRecord } from './records.js';
 import type { Point, Series } from './series.js';
+import { notCompared } from './shares.js';
 
 export interface Verdict {
   readonly kind: 'nan' | 'infinity' | 'decision' | 'unstable' | 'growth' | 'error' | 'fine' | 'nothing';
@@ -124,22 +125,44 @@ export function growthOf(series: Series): Growth {
   return points.length >= few ? shortGrowth(points) : noGrowth;
 }
 
+/**
+ * Whether a kernel's outputs reach its own inputs, directly or through other kernels: errors grow in such a cycle, and what only looks at
+ * them, as a total does, shows it.
+ */
+function readsItself(records: Records, kernel: number): boolean {
+  const reached = new Set<number>();
+  const open = [kernel];
+  for (let from = open.pop(); from !== undefined; from = open.pop()) {
+    for (const source of records.kernels[from]?.readFrom ?? []) {
+      if (source === kernel) return true;
+      if (reached.has(source)) continue;
+      reached.add(source);
+      open.push(source);
+    }
+  }
+  return false;
+}
+
 /** An instability shows in most of what the page computes over and over again. */
 function unstableVerdict(records: Records): Verdict | null {
   const often = 4;
   let [growing, steady] = [0, 0];
   let fastest = noGrowth;
   let worst = null;
-  for (const kernel of records.kernels) {
+  let isWorstInCycle = false;
+  for (const [i, kernel] of records.kernels.entries()) {
     if (kernel.amplification.count < often) continue;
+    const isInCycle = readsItself(records, i);
     for (const { points } of kernel.outputs) {
       if (points.points.length === 0) continue;
       const growth = growthOf(points);
       if (growth.factor > 1) ++growing;
       else ++steady;
-      if (growth.factor <= fastest.factor) continue;
+      if (growth.factor <= 1 || (isWorstInCycle && !isInCycle)) continue;
+      if (isWorstInCycle === isInCycle && growth.factor <= fastest.factor) continue;
       fastest = growth;
       worst = kernel;
+      isWorstInCycle = isInCycle;
     }
   }
   if (worst === null || growing < steady) return null;
@@ -160,7 +183,13 @@ function shareVerdicts(records: Records, result: ResultRecord): Verdict[] {
   const shares = sharesOf(records);
   const most = shares.reduce((best, share, i) => (share > (shares[best] ?? 0) ? i : best), -1);
   const worst = records.kernels[most];
-  if (worst === undefined || !(result.largest > 0)) return [];
+  if (!(result.largest > 0)) return [];
+  const unknown = result.shares.entries().find(([kernel]) => kernel === notCompared)?.[1] ?? 0;
+  if (unknown > (shares[most] ?? 0)) {
+    const text = `calls that were not compared (every, kernels) add ${(100 * unknown).toFixed(0)} % of the error of what the page reads: ${digitsOf(result.largest)} of '${result.name}' survive`;
+    return [{ kind: 'error', kernel: '', call: 0, text }];
+  }
+  if (worst === undefined) return [];
   const choices = worst.choices === '' ? '' : ` (${worst.choices})`;
   const text = `${worst.name}${choices} adds ${(100 * shares[most]!).toFixed(0)} % of the error of what the page reads: ${digitsOf(result.largest)} of '${result.name}' survive`;
   return [{ kind: 'error', kernel: worst.name, call: worst.worst?.call ?? 0, text }];
