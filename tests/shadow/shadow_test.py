@@ -98,12 +98,14 @@ check(all(k["storage"] is None for k in report["kernels"]), f"half: {report['ker
 
 # Calls that are not compared: what they add is not what others do.
 _, report = run("unseen", shadow="report.html,every=2")
-check("calls that were not compared" in first(report)["text"], f"unseen: {report['verdicts']}")
+check(first(report)["kernel"] == "faults::advance", f"unseen: {report['verdicts']}")
 total = next(r for r in report["results"] if r["name"] == "faults::total")
 check(total["reads"] == 2 and total["error"]["last"] > 1e-6, f"unseen: {total}")
 check(max(total["shares"], key=lambda each: each["share"])["kernel"] == "(calls that were not compared)", f"unseen: {total}")
 _, report = run("unseen", shadow="report.html,kernels=faults::smooth")
-check("calls that were not compared" in first(report)["text"], f"unseen: {report['verdicts']}")
+check("calls that were not compared (every=, kernels=) add" in first(report)["text"], f"unseen: {report['verdicts']}")
+_, report = run("unseen", shadow="report.html,kernels=faults::smooth,kernels=faults::gain,kernels=faults::ramp")
+check("faults::advance, which is not compared, adds" in first(report)["text"], f"unseen: {report['verdicts']}")
 for every in (1, 2, 4, 7):
     _, report = run("steady", shadow=f"report.html,every={every}")
     check(first(report)["kind"] == "error" and first(report)["kernel"] == "faults::advance", f"steady: {report['verdicts']}")

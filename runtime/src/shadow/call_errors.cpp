@@ -80,6 +80,8 @@ void CallFollower::addRest(const Written& written, StreamErrors& after) const {
     after.relative = std::sqrt(here + there);
     after.hasNan = after.hasNan || before.hasNan;
     after.hasInfinity = after.hasInfinity || before.hasInfinity;
+    if (before.isEstimated && (!after.isEstimated || before.unseen != after.unseen))
+      after.unseen = after.isEstimated ? shadow::notCompared : before.unseen;
     after.isEstimated = after.isEstimated || before.isEstimated;
   }
   after.shares.normalize();
@@ -92,12 +94,14 @@ StreamErrors CallFollower::estimatedErrors(const Written& written) const {
   const shadow::Influences::Compared known = device_.influences().comparedOf(call_.kernel, written.argument);
   StreamErrors after;
   after.isEstimated = true;
+  after.unseen = kernel_;
   double inputs = 0;
   for (const Read& read : read_) {
     inputs = std::max(inputs, read.errors.relative);
     after.hasNan = after.hasNan || read.errors.hasNan;
     after.hasInfinity = after.hasInfinity || read.errors.hasInfinity;
     after.exception = std::max(after.exception, read.errors.exception);
+    if (read.errors.isEstimated && read.errors.unseen != kernel_) after.unseen = shadow::notCompared;
   }
   const double inherited = known.amplification * inputs;
   after.relative = known.own + inherited;
@@ -122,7 +126,7 @@ void StreamErrors::measure(double measured) {
     const double part = slack * relative / measured;
     shadow::Shares all;
     all.add(shares, part);
-    all.add(shadow::notCompared, 1 - part);
+    all.add(unseen, 1 - part);
     shares = all;
     shares.normalize();
   }

@@ -228,29 +228,37 @@ bool readsItself(const Report& report, int kernel) {
   return false;
 }
 
-/// An instability shows in most of what the program computes over and over again.
-std::optional<Verdict> unstableVerdict(const Report& report) {
+struct Growing {
+  const KernelRecord* kernel = nullptr;
+  Growth growth;
+};
+
+/// The kernel with the fastest growth among kernels, if errors grow in most of what these compute over and over again: an
+/// instability shows in most of it.
+template <class Counts>
+Growing fastestAmong(const Report& report, Counts&& counts) {
   constexpr std::int64_t often = 4;
-  const KernelRecord* worst = nullptr;
-  Growth fastest;
-  bool isWorstInCycle = false;
+  Growing fastest;
   int growing = 0, steady = 0;
   for (std::size_t i = 0; i < report.kernels.size(); ++i) {
     const KernelRecord& kernel = report.kernels[i];
-    if (kernel.amplification.count() < often) continue;
-    const bool isInCycle = readsItself(report, static_cast<int>(i));
+    if (kernel.amplification.count() < often || !counts(static_cast<int>(i))) continue;
     for (const OutputRecord& output : kernel.outputs) {
       if (output.points.points().empty()) continue;
       const Growth growth = growthOf(output.points);
       (growth.factor > 1 ? growing : steady) += 1;
-      if (growth.factor <= 1 || isInCycle < isWorstInCycle) continue;
-      if (isInCycle == isWorstInCycle && growth.factor <= fastest.factor) continue;
-      fastest = growth;
-      worst = &kernel;
-      isWorstInCycle = isInCycle;
+      if (growth.factor > fastest.growth.factor) fastest = {&kernel, growth};
     }
   }
-  if (worst == nullptr || growing < steady) return std::nullopt;
+  return growing < steady ? Growing{} : fastest;
+}
+
+/// Feedback may pass through the host, which nobody sees: then all kernels count.
+std::optional<Verdict> unstableVerdict(const Report& report) {
+  Growing found = fastestAmong(report, [&](int kernel) { return readsItself(report, kernel); });
+  if (found.kernel == nullptr) found = fastestAmong(report, [](int) { return true; });
+  const auto& [worst, fastest] = found;
+  if (worst == nullptr) return std::nullopt;
   const double others = static_cast<double>(report.calls) / static_cast<double>(worst->calls);
   const std::string growth =
       fmt::format("the error grows by a factor of {:.4g} with each call of {}, for {:.0f} calls",
@@ -299,6 +307,8 @@ void addShares(Report& report, const ResultRecord* result) {
     return add(fmt::format("calls that were not compared (every=, kernels=) add {:.0f} %", 100 * unknown));
   if (ofHost > ofWorst || worst == nullptr)
     return add(fmt::format("what the host has written or copied brings {:.0f} %", 100 * ofHost));
+  if (worst->followed == 0)
+    return add(fmt::format("{}, which is not compared, adds {:.0f} %", worst->name, 100 * worst->share));
   const std::string choices = worst->choices.empty() ? "" : fmt::format(" ({})", worst->choices);
   const std::string whose = fmt::format("{}{} adds {:.0f} % of the error of what the program reads",
                                         worst->name, choices, 100 * worst->share);

@@ -25,6 +25,7 @@ struct StreamErrors {
   bool hasNan = false, hasInfinity = false;  ///< on the device
   int exception = -1;  ///< number of the record of the NaN or infinity that they come from
   bool isEstimated = false;  ///< calls that were not compared have written some: `relative` is expected
+  int unseen = shadow::notCompared;  ///< the kernel of these calls, if it is one
 
   /// Estimated errors have been measured: what the estimate does not explain is of calls that were not compared.
   void measure(double measured);

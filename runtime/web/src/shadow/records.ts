@@ -50,8 +50,8 @@ export class KernelRecord {
   readonly outputs: OutputRecord[] = [];
   /** The kernels whose outputs it has read. */
   readonly readFrom = new Set<number>();
-  /** Its own errors have made those of others smaller. */
-  compensates = false;
+  /** What the last compared call has shown of each output: the error that it has added, and how it magnifies those of its inputs. */
+  readonly compared = new Map<string, { readonly own: number; readonly amplification: number }>();
 
   constructor(readonly name: string) {}
 

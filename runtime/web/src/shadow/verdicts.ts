@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Concludes from the records of a page which kernel is to blame for what: runtime/src/shadow/report.cpp. No GL: Node tests it.
-import type { DecisionRecord, ExceptionRecord, Records, ResultRecord } from './records.js';
+import type { DecisionRecord, ExceptionRecord, KernelRecord, Records, ResultRecord } from './records.js';
 import type { Point, Series } from './series.js';
 import { notCompared } from './shares.js';
 
@@ -143,29 +143,33 @@ function readsItself(records: Records, kernel: number): boolean {
   return false;
 }
 
-/** An instability shows in most of what the page computes over and over again. */
-function unstableVerdict(records: Records): Verdict | null {
+/**
+ * The kernel with the fastest growth among kernels, if errors grow in most of what these compute over and over again: an instability shows
+ * in most of it.
+ */
+function fastestAmong(records: Records, counts: (kernel: number) => boolean): { kernel: KernelRecord | null; growth: Growth } {
   const often = 4;
   let [growing, steady] = [0, 0];
-  let fastest = noGrowth;
-  let worst = null;
-  let isWorstInCycle = false;
+  let fastest: { kernel: KernelRecord | null; growth: Growth } = { kernel: null, growth: noGrowth };
   for (const [i, kernel] of records.kernels.entries()) {
-    if (kernel.amplification.count < often) continue;
-    const isInCycle = readsItself(records, i);
+    if (kernel.amplification.count < often || !counts(i)) continue;
     for (const { points } of kernel.outputs) {
       if (points.points.length === 0) continue;
       const growth = growthOf(points);
       if (growth.factor > 1) ++growing;
       else ++steady;
-      if (growth.factor <= 1 || (isWorstInCycle && !isInCycle)) continue;
-      if (isWorstInCycle === isInCycle && growth.factor <= fastest.factor) continue;
-      fastest = growth;
-      worst = kernel;
-      isWorstInCycle = isInCycle;
+      if (growth.factor > fastest.growth.factor) fastest = { kernel, growth };
     }
   }
-  if (worst === null || growing < steady) return null;
+  return growing < steady ? { kernel: null, growth: noGrowth } : fastest;
+}
+
+/** Feedback may pass through the page, which nobody sees: then all kernels count. */
+function unstableVerdict(records: Records): Verdict | null {
+  let found = fastestAmong(records, (kernel) => readsItself(records, kernel));
+  if (found.kernel === null) found = fastestAmong(records, () => true);
+  const { kernel: worst, growth: fastest } = found;
+  if (worst === null) return null;
   const others = records.calls / worst.calls;
   const text = `the error grows by a factor of ${short(fastest.factor ** others, 4)} with each call of ${worst.name}, for ${(fastest.calls / others).toFixed(0)} calls`;
   const verdict = { kernel: worst.name, call: 0 };
