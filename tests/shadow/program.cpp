@@ -529,6 +529,17 @@ void runWrite() {
   plate.v.read();
 }
 
+/// Waits between two calls.
+void runWait() {
+  Plate plate;
+  faults::advance(0.01F, plate.u, plate.v);
+  std::puts("waits");
+  std::fflush(stdout);
+  std::getchar();
+  faults::advance(0.01F, plate.v, plate.u);
+  plate.u.read();
+}
+
 void runNothing() {
   sk::Device device;
   std::printf("%d\n", device.stream<float>({4}).shape().rank());
@@ -555,7 +566,7 @@ const std::map<std::string, std::function<void()>> programs = {
     {"widened", runWidened},   {"watched", runWatched},   {"unseen", runUnseen},
     {"steady", runSteady},     {"sorted", runSorted},     {"ordered", runOrdered},
     {"unique", runUnique},     {"counted", runCounted},   {"throw", runThrow},
-    {"chdir", runChdir},       {"wide", runWide}};
+    {"chdir", runChdir},       {"wide", runWide},         {"wait", runWait}};
 
 }  // namespace
 

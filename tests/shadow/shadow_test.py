@@ -237,6 +237,22 @@ check(names == ["report-2.html", "report-2.json", "report.html"], f"overwrite: {
 for name in names[:2]:
     os.remove(os.path.join(folder.name, name))
 
+# Two processes whose reports have one name: the page and the JSON of each stay together.
+environment = {**os.environ, "SK_DEVICE": device, "SK_SHADOW": "report.html"}
+with subprocess.Popen([program, "wait"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                      cwd=folder.name, env=environment) as waiting:
+    waiting.stdout.readline()
+    subprocess.run([program, "nothing"], stdout=subprocess.DEVNULL, cwd=folder.name, env=environment)
+    _, said = waiting.communicate("\n")
+reports = {}
+for name in sorted(name for name in os.listdir(folder.name) if name.startswith("report")):
+    with open(os.path.join(folder.name, name)) as file:
+        text = file.read()
+    os.remove(os.path.join(folder.name, name))
+    reports[name] = next(mode for mode in ("wait", "nothing") if f'"program":"shadow_program {mode}"' in text)
+check(reports == {"report-2.html": "wait", "report-2.json": "wait", "report.html": "nothing", "report.json": "nothing"},
+      f"two processes: {reports} {said}")
+
 # What cannot be followed is said, and changes nothing.
 plain, _ = run("fine", shadow=None)
 for shadow, text in {

@@ -294,17 +294,6 @@ void ShadowStream::exchangeElements(StreamState& other) noexcept {
   exchangeMarks(other);
 }
 
-/// ShadowDevice::reorder() moves the elements of the device and of the reference itself.
-void ShadowStream::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
-  NativeStream* const held = reference();
-  change(region, [&](const StreamRegion& target) {
-    if (target.stream == held) return held->permute(target, sources);
-    const DenseRegion dense(target, /*isRead=*/true);
-    dense.get().stream->permute(dense.get(), sources);
-    dense.finish();
-  });
-}
-
 void ShadowStream::noteCountRead() {
   if (!last.pushed || !owner().isFollowing() || owner().internalWork > 0) return;
   recordCount(*this, fmt::format("{} (number of elements)", describe()), shape.size(),

@@ -104,7 +104,6 @@ class ShadowStream final : public StreamState {
   void fill(const StreamRegion& region, const std::byte* value) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
   void exchangeElements(StreamState& other) noexcept override;
-  void permute(const StreamRegion& region, std::span<const std::int32_t> sources) override;
   StreamTexture texture(int plane) override;
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;
