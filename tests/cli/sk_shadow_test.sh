@@ -78,6 +78,23 @@ prints 'ended early: the memory of the reference (8 GB) was exhausted in call 50
 prints "one of 2 calls of heat::*; the reference takes the device's decisions"
 matches '^  1 +llvmpipe \(LLVM 15\.0\.6, 256 bits\) +1001$'
 
+# Errors that make others smaller, and what an element was computed from.
+python3 - <<'PY'
+import json
+report = json.load(open("exceptional.json"))
+press = report["kernels"][1]
+press.update(share=0, compensates=True)
+press["worst"]["source"] = "of a gather, the element at the same index is shown"
+press["worst"]["inputs"][0]["at"] = [0, 63]
+json.dump(report, open("compensating.json", "w"))
+PY
+run 0 compensating.json
+matches '^  flow::press +<0 % '
+run 0 compensating.json --kernel press
+matches '^  share +<0 % of the results'
+prints '    of a gather, the element at the same index is shown'
+matches '^    [a-z]+\[0\]\[63\] '
+
 # Long tables are cut, unless all is asked for; no members of a later version are in the way.
 python3 - <<'PY'
 import json

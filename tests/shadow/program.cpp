@@ -59,6 +59,16 @@ void runStored() {
   plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
 }
 
+/// Doubles that floats store, over and over again.
+void runWidened() {
+  Plate plate;
+  for (int i = 0; i < 1000; ++i) {
+    faults::advance.with({.precision = sk::Precision::Double})(0.001F, plate.u, plate.v);
+    std::swap(plate.u, plate.v);
+  }
+  plate.u.read();
+}
+
 void runNan() {
   Plate plate;
   for (int i = 0; i < 1200; ++i) {
@@ -159,6 +169,64 @@ void runUnstable() {
   plate.u.read();
 }
 
+/// The same, with kernels that look at each step.
+void runWatched() {
+  Plate plate;
+  Field squares = plate.device.stream<float>({size});
+  for (int i = 0; i < 40; ++i) {
+    faults::diffuse(0.6F, plate.u, plate.v);
+    faults::square(plate.v, squares);
+    faults::cube(plate.v, squares);
+    std::printf("%a\n", static_cast<double>(faults::total(squares)));
+    std::swap(plate.u, plate.v);
+  }
+  plate.u.read();
+}
+
+/// With every=2, the bad call is not compared.
+void runUnseen() {
+  Plate plate;
+  faults::gain(1.25F, plate.u, plate.w);
+  std::printf("%a\n", static_cast<double>(faults::total(plate.w)));
+  faults::advance(0.01F, plate.w, plate.v);
+  faults::advance.with({.precision = sk::Precision::Half})(0.01F, plate.w, plate.v);
+  std::printf("%a\n", static_cast<double>(faults::total(plate.v)));
+  faults::smooth(plate.v, plate.u);
+  plate.u.read();
+}
+
+/// All calls of one kernel are bad, and few of them are compared.
+void runSteady() {
+  Plate plate;
+  for (int i = 0; i < 15; ++i) {
+    faults::advance.with({.precision = sk::Precision::Half})(0.01F, plate.u, plate.v);
+    faults::gain(1, plate.v, plate.w);
+    std::swap(plate.u, plate.w);
+  }
+  plate.u.read();
+}
+
+/// Keys that are different doubles and few different floats, in the other order.
+struct Keys : Plate {
+  Keys() : Plate(0.50000006F, 0.5F) { faults::ramp(1, 1000, w); }
+};
+
+void runSorted() {
+  Keys plate;
+  sk::sort(plate.u, plate.w);
+  plate.w.read();
+}
+
+void runOrdered() {
+  Keys plate;
+  std::printf("%d\n", sk::order(plate.u).read()[0]);
+}
+
+void runUnique() {
+  Keys plate;
+  std::printf("%lld\n", static_cast<long long>(sk::unique(plate.u, plate.w)));
+}
+
 void runNearest() {
   Plate plate(0.299F, 0.301F);
   auto measured = plate.device.stream<faults::Nearest>({size});
@@ -194,6 +262,14 @@ void runPush() {
   Field kept = plate.device.stream<float>({size});
   faults::keep(limitIn(plate.u), plate.u, kept);
   std::printf("%zu\n", kept.read().size());
+}
+
+/// The host asks for the number alone.
+void runCounted() {
+  Plate plate;
+  Field kept = plate.device.stream<float>({size});
+  faults::keep(limitIn(plate.u), plate.u, kept);
+  std::printf("%lld\n", static_cast<long long>(kept.size()));
 }
 
 void print(const char* name, const std::vector<float>& values) {
@@ -406,6 +482,31 @@ void runAbort() {
   std::abort();
 }
 
+/// Nothing catches this.
+void runThrow() {
+  Plate plate;
+  plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
+  throw 3;
+}
+
+void runChdir() {
+  Plate plate;
+  plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
+  if (chdir("/") != 0) std::abort();
+}
+
+/// Numbers that are no floats.
+void runWide() {
+  sk::Device device;
+  Field u = device.stream<float>({size}, sk::Storage::Extended, "u"),
+        v = device.stream<float>({size}, sk::Storage::Extended, "v");
+  std::vector<double> numbers(size);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = 0.1 + static_cast<double>(i) / 3000;
+  u.writeReals(numbers);
+  faults::gain.with({.precision = sk::Precision::Extended})(1, u, v);
+  for (const double value : v.readReals()) std::printf("%a\n", value);
+}
+
 void runFork() {
   Plate plate;
   faults::advance(0.01F, plate.u, plate.v);
@@ -426,6 +527,17 @@ void runWrite() {
   faults::advance(0.01F, plate.u, plate.v);
   std::ofstream("report.html") << "the program's own\n";
   plate.v.read();
+}
+
+/// Waits between two calls.
+void runWait() {
+  Plate plate;
+  faults::advance(0.01F, plate.u, plate.v);
+  std::puts("waits");
+  std::fflush(stdout);
+  std::getchar();
+  faults::advance(0.01F, plate.v, plate.u);
+  plate.u.read();
 }
 
 void runNothing() {
@@ -450,7 +562,11 @@ const std::map<std::string, std::function<void()>> programs = {
     {"abort", runAbort},       {"fork", runFork},         {"overwrite", runWrite},
     {"nothing", runNothing},   {"devices", runDevices},   {"changes", runChanges},
     {"memory", runMemory},     {"mixed", runMixed},       {"late", runLate},
-    {"narrowed", runNarrowed}, {"precise", runPrecise},   {"worst", runWorst}};
+    {"narrowed", runNarrowed}, {"precise", runPrecise},   {"worst", runWorst},
+    {"widened", runWidened},   {"watched", runWatched},   {"unseen", runUnseen},
+    {"steady", runSteady},     {"sorted", runSorted},     {"ordered", runOrdered},
+    {"unique", runUnique},     {"counted", runCounted},   {"throw", runThrow},
+    {"chdir", runChdir},       {"wide", runWide},         {"wait", runWait}};
 
 }  // namespace
 

@@ -45,7 +45,7 @@ def first(report):
 # One bad kernel each, and what the first line of the report says.
 faults = {
     "half": ("error", "faults::advance"),
-    "stored": ("error", "faults::advance"),
+    "stored": ("storage", "faults::advance"),
     "nan": ("nan", "faults::root"),
     "floatnan": ("nan", "faults::angle"),
     "infinity": ("infinity", "faults::square"),
@@ -57,6 +57,11 @@ faults = {
     "mixed": ("error", "faults::advance"),
     "late": ("error", "faults::spread"),
     "unstable": ("unstable", "faults::diffuse"),
+    "watched": ("unstable", "faults::diffuse"),
+    "sorted": ("decision", "sk::sort"),
+    "ordered": ("decision", "sk::order"),
+    "unique": ("decision", "sk::unique"),
+    "counted": ("decision", "faults::keep"),
     "nearest": ("error", "faults::measure"),
     "sum": ("error", "faults::pairs"),
     "push": ("decision", "faults::keep"),
@@ -69,8 +74,70 @@ for name, (kind, kernel) in faults.items():
     verdict = first(report)
     check(verdict["kind"] == kind and verdict["kernel"] == kernel and (kernel in verdict["text"]),
           f"{name}: the first line is {verdict}, not {kind} of {kernel}; all: {report['verdicts']}")
+    if name == "stored":
+        stored = next(k for k in report["kernels"] if k["name"] == kernel)
+        part = stored["storage"]["largest"] / stored["own"]["largest"]
+        check("storing 'v' in halves" in verdict["text"] and "store it in floats" in verdict["text"], f"stored: {verdict}")
+        check(0.9 < part < 1.1, f"stored: {part} of the own error is storing")
+    if name == "counted":
+        count = next((r for r in report["results"] if r["name"].endswith("(number of elements)")), None)
+        check(count is not None and count["differs"] == 1, f"counted: {report['results']}")
+    if name == "unique":
+        count = next((r for r in report["results"] if "sk::unique" in r["name"]), None)
+        check(count is not None and count["differs"] == 1, f"unique: {report['results']}")
     if name == "nan":
         check(verdict["call"] == 3002, f"nan: in call {verdict['call']}")  # ramp, then 1,000 steps of three calls
+
+# Doubles that floats store: not where a kernel computes in floats, too.
+if device == "native":
+    done, report = run("widened")
+    check(first(report)["kind"] == "storage" and "store it in doubles" in first(report)["text"], f"widened: {report['verdicts']}")
+    check(all(k["storage"] is None for k in report["kernels"] if k["name"] != "faults::advance"), f"widened: {report['kernels']}")
+_, report = run("half")
+check(all(k["storage"] is None for k in report["kernels"]), f"half: {report['kernels']}")
+
+# Calls that are not compared: what they add is not what others do.
+_, report = run("unseen", shadow="report.html,every=2")
+check(first(report)["kernel"] == "faults::advance", f"unseen: {report['verdicts']}")
+total = next(r for r in report["results"] if r["name"] == "faults::total")
+check(total["reads"] == 2 and total["error"]["last"] > 1e-6, f"unseen: {total}")
+check(max(total["shares"], key=lambda each: each["share"])["kernel"] == "(calls that were not compared)", f"unseen: {total}")
+_, report = run("unseen", shadow="report.html,kernels=faults::smooth")
+check("calls that were not compared (every=, kernels=) add" in first(report)["text"], f"unseen: {report['verdicts']}")
+_, report = run("unseen", shadow="report.html,kernels=faults::smooth,kernels=faults::gain,kernels=faults::ramp")
+check("faults::advance, which is not compared, adds" in first(report)["text"], f"unseen: {report['verdicts']}")
+for every in (1, 2, 4, 7):
+    _, report = run("steady", shadow=f"report.html,every={every}")
+    check(first(report)["kind"] == "error" and first(report)["kernel"] == "faults::advance", f"steady: {report['verdicts']}")
+
+# Orders: the reference has its own, or takes over the device's.
+for name in ("sorted", "ordered", "unique"):
+    for decisions, isFollowed in (("own", False), ("follow", True)):
+        _, report = run(name, shadow=f"report.html,decisions={decisions}")
+        read = [r["error"]["largest"] for r in report["results"] if "number of elements" not in r["name"]]
+        check(all((error < 1e-6) == isFollowed for error in read), f"{name}, {decisions}: {report['results']}")
+        check(report["decisions"] and report["decisions"][0]["kernel"].startswith("sk::"), f"{name}: {report['decisions']}")
+
+# What an element was computed from, where its index does not say.
+_, report = run("everything")
+sources = {k["name"]: k["worst"].get("source", "") for k in report["kernels"] if k["worst"]}
+inputs = {k["name"]: k["worst"]["inputs"] for k in report["kernels"] if k["worst"]}
+check(sources["everything::relax"].startswith("of a gather"), f"{sources}")
+check(any(i["parameter"] == "u" and len(i["at"]) == 2 for i in inputs["everything::relax"]), f"{inputs['everything::relax']}")
+check(sources["everything::spread"].startswith("which elements were scattered"), f"{sources}")
+check(sources["everything::prefix"].startswith("it was computed from all elements up to"), f"{sources}")
+check(sources["everything::sum"].startswith("it was computed from several elements: of 97 of x"), f"{sources}")
+check(sources["everything::split"] == "" and "at" not in inputs["everything::split"][0], f"{sources}")
+
+# A number in the place of one element changes no other, also of a stream that holds more digits than floats.
+plain, _ = run("wide", shadow=None)
+done, report = run("wide", shadow="report.html,set=faults::gain.x[7]:nan")
+before, after = plain.stdout.split(), done.stdout.split()
+check([i for i, (a, b) in enumerate(zip(before, after)) if a != b] == [7], f"wide: {done.stdout[:200]}")
+done, report = run("wide", shadow="report.html,set=faults::gain.x[7]:0.7,given=list")
+check(abs(float.fromhex(done.stdout.split()[7]) - (0.7 + 0.125)) < 1e-13, f"wide: {done.stdout.split()[7]}")
+given = next(g for g in report["given"] if g["parameter"] == "x")
+check(abs(given["low"] - 0.1) < 1e-13, f"wide: {given}")
 
 done, report = run("fine")
 check(first(report)["kind"] == "fine", f"fine: {report['verdicts']}")
@@ -143,6 +210,19 @@ for name, status in {"exit": 3, "abort": -6, "fork": 0}.items():
           f"{name}: {done.returncode} {done.stderr}")
     check(report is not None and (report["ended"] == "normally") == (name != "abort"),
           f"{name}: {report and report['ended']}")
+done, report = run("throw")
+check(done.returncode == -6 and report["calls"] == 7 and report["ended"] == "early: an exception after 7 calls",
+      f"throw: {done.returncode} {report['calls']} {report['ended']}")
+done, report = run("abort")
+check(report["calls"] > 0, f"abort: {report['calls']}")
+done, report = run("chdir")
+check(report["ended"] == "normally" and done.stderr == "", f"chdir: {report['ended']} {done.stderr}")
+plain, _ = run("fine", shadow=None, SK_DEVICE="reference")
+done, report = run("fine", SK_DEVICE="reference")
+text = "the reference device has no shadow"
+check(done.stdout == plain.stdout and done.stderr.startswith(f"SK_SHADOW: {text}"), f"reference: {done.stderr}")
+check(first(report)["text"] == "no call was compared; the notes say why" and report["notes"][0].startswith(text),
+      f"reference: {report['verdicts']} {report['notes']}")
 done, report = run("nothing")
 check(done.stdout == "1\n" and first(report)["text"] == "the program has called no kernel", f"nothing: {first(report)}")
 done, report = run("devices")
@@ -152,6 +232,26 @@ own, other = (os.path.join(folder.name, name) for name in ("report.html", "repor
 with open(own) as file:
     check(file.read() == "the program's own\n", "overwrite: the program's own file was replaced")
 check(os.path.exists(other) and "report-2.html" in done.stderr, f"overwrite: {done.stderr}")
+names = sorted(name for name in os.listdir(folder.name) if name.startswith("report"))
+check(names == ["report-2.html", "report-2.json", "report.html"], f"overwrite: {names}")
+for name in names[:2]:
+    os.remove(os.path.join(folder.name, name))
+
+# Two processes whose reports have one name: the page and the JSON of each stay together.
+environment = {**os.environ, "SK_DEVICE": device, "SK_SHADOW": "report.html"}
+with subprocess.Popen([program, "wait"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                      cwd=folder.name, env=environment) as waiting:
+    waiting.stdout.readline()
+    subprocess.run([program, "nothing"], stdout=subprocess.DEVNULL, cwd=folder.name, env=environment)
+    _, said = waiting.communicate("\n")
+reports = {}
+for name in sorted(name for name in os.listdir(folder.name) if name.startswith("report")):
+    with open(os.path.join(folder.name, name)) as file:
+        text = file.read()
+    os.remove(os.path.join(folder.name, name))
+    reports[name] = next(mode for mode in ("wait", "nothing") if f'"program":"shadow_program {mode}"' in text)
+check(reports == {"report-2.html": "wait", "report-2.json": "wait", "report.html": "nothing", "report.json": "nothing"},
+      f"two processes: {reports} {said}")
 
 # What cannot be followed is said, and changes nothing.
 plain, _ = run("fine", shadow=None)
@@ -173,6 +273,10 @@ check(first(report)["kind"] == "nothing", f"memory: {report['verdicts']}")
 done, report = run("fine", shadow="report.html,kernels=faults::adv*,every=2")
 check([k["followed"] for k in report["kernels"] if k["name"] == "faults::advance"] == [1], "kernels=: not followed")
 check(all(k["followed"] == 0 for k in report["kernels"] if k["name"] != "faults::advance"), "kernels=: others are followed")
+done, report = run("fine", shadow="report.html,kernels=faults::advanse,kernels=faults::gain")
+text = "kernels=faults::advanse matches no kernel that the program has called; did you mean 'faults::advance'?"
+check(done.stdout == plain.stdout and done.stderr == f"SK_SHADOW: {text}\n" and text in report["notes"],
+      f"kernels=: {done.stderr} {report['notes']}")
 done, report = run("cell", shadow="report.html,decisions=follow")
 check(all(result["error"]["largest"] < 1e-6 for result in report["results"]), f"follow: {report['results']}")
 done, report = run("fine", SK_CHECK="written")

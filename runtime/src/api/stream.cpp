@@ -163,7 +163,11 @@ StreamRegion detail::wholeRegion(StreamState* state) {
 Shape detail::shapeOf(StreamState* state) {
   if (state == nullptr) return {};
   constexpr std::string_view what = "the shape of a stream";
-  return withHostMemory(what, [&] { return liveStream({state, {}, {}}, what).shape; });
+  return withHostMemory(what, [&] {
+    StreamState& stream = liveStream({state, {}, {}}, what);
+    stream.noteCountRead();
+    return stream.shape;
+  });
 }
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {

@@ -65,6 +65,8 @@ class StreamState {
   /// Determines the number of elements if it is not known, which waits for the device. No scope of the device
   /// may be open.
   virtual void settle() = 0;
+  /// The host has asked for the shape, which a kernel that pushes changes.
+  virtual void noteCountRead() {}
   /// The region is in bounds and not empty; `elements` has as many elements, laid out as the Element says.
   virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
   virtual void read(const StreamRegion& region, std::byte* elements) = 0;

@@ -108,11 +108,11 @@ class Reader {
 
 template <class Archive>
 void visit(Archive& archive, Input& it) {
-  archive(it.parameter, it.value, it.isReal);
+  archive(it.parameter, it.value, it.isReal, it.at);
 }
 template <class Archive>
 void visit(Archive& archive, ElementRecord& it) {
-  archive(it.call, it.output, it.index, it.device, it.reference, it.isReal, it.inputs);
+  archive(it.call, it.output, it.index, it.device, it.reference, it.isReal, it.inputs, it.source);
 }
 template <class Archive>
 void visit(Archive& archive, Series& it) {
@@ -130,6 +130,7 @@ template <class Archive>
 void visit(Archive& archive, KernelRecord& it) {
   archive(it.name, it.calls, it.followed, it.seconds, it.own, it.storage, it.inherited, it.total,
           it.amplification, it.worst, it.worstError, it.nans, it.infinities, it.flushed, it.decisions,
+          it.ownSquares, it.storedSquares, it.stored, it.storedBetter, it.readFrom, it.compensates,
           it.choices, it.outputs);
 }
 template <class Archive>
@@ -160,7 +161,7 @@ void visit(Archive& archive, ExceptionRecord& it) {
 }
 template <class Archive>
 void visit(Archive& archive, DecisionRecord& it) {
-  archive(it.kernel, it.elements, it.isInherited, it.first);
+  archive(it.kernel, it.elements, it.isInherited, it.first, it.ofKeys);
 }
 template <class Archive>
 void visit(Archive& archive, Report& it) {
@@ -274,6 +275,14 @@ void add(KernelRecord& to, const KernelRecord& from) {
   to.infinities += from.infinities;
   to.flushed += from.flushed;
   to.decisions += from.decisions;
+  to.ownSquares += from.ownSquares;
+  to.storedSquares += from.storedSquares;
+  if (to.stored.empty()) {
+    to.stored = from.stored;
+    to.storedBetter = from.storedBetter;
+  }
+  to.readFrom.insert(to.readFrom.end(), from.readFrom.begin(), from.readFrom.end());
+  to.compensates = to.compensates || from.compensates;
   if (to.choices.empty()) to.choices = from.choices;
   for (const OutputRecord& output : from.outputs) {
     OutputRecord& record = recordNamed(to.outputs, output);
@@ -338,13 +347,17 @@ Report merged(std::vector<Report> reports) {
   for (Report& report : reports) {
     std::vector<int> numbers;  // of its kernels, among all
     for (const KernelRecord& kernel : report.kernels) {
-      add(recordNamed(all.kernels, kernel), kernel);
+      recordNamed(all.kernels, kernel);
       numbers.push_back(static_cast<int>(std::ranges::find(all.kernels, kernel.name, &KernelRecord::name) -
                                          all.kernels.begin()));
     }
     const auto numberOf = [&](int kernel) {
       return kernel < 0 ? kernel : numbers[static_cast<std::size_t>(kernel)];
     };
+    for (KernelRecord& kernel : report.kernels) {
+      std::ranges::transform(kernel.readFrom, kernel.readFrom.begin(), numberOf);
+      add(recordNamed(all.kernels, kernel), kernel);
+    }
     for (ResultRecord& result : report.results) {
       result.shares = result.shares.renumbered(numberOf);
       add(recordNamed(all.results, result), result);

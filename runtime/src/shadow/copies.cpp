@@ -47,12 +47,12 @@ AffineRegion denseLike(const AffineRegion& shape, std::int64_t first) {
   return dense;
 }
 
+}  // namespace
+
 bool holdsOnlyFloats(const program::Element& element) {
   return std::ranges::all_of(
       element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
 }
-
-}  // namespace
 
 std::int64_t bytesOf(const NativeStream& stream) {
   std::int64_t bytes = 0;

@@ -15,6 +15,9 @@ std::int64_t bytesOf(const NativeStream& stream);
 /// Whether a region has all elements of its stream, in order.
 bool isAllInOrder(const StreamRegion& region);
 
+/// Whether all numbers of an element are floats, which streams may store as wider numbers than host memory has.
+bool holdsOnlyFloats(const program::Element& element);
+
 /// Copies all elements of a native stream to a region of the same size on any device.
 void copyToDevice(NativeStream& from, const StreamRegion& to);
 

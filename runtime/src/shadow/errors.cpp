@@ -65,9 +65,11 @@ double OutputErrors::reportedTotal() const {
   return lost > 0 ? std::numeric_limits<double>::infinity() : relativeTotal();
 }
 
-double OutputErrors::ownShare() const {
+double OutputErrors::ownShare() const { return std::clamp(signedOwnShare(), 0.0, 1.0); }
+
+double OutputErrors::signedOwnShare() const {
   if (newNans.count > 0 || newInfinities.count > 0) return 1;
-  return total2 > 0 ? std::clamp(ownInTotal / total2, 0.0, 1.0) : 0;
+  return total2 > 0 ? ownInTotal / total2 : 0;
 }
 
 double OutputErrors::scale() const {
@@ -368,13 +370,16 @@ bool haveSameBits(const NativeStream& a, const NativeStream& b) {
   return true;
 }
 
-double squaresOfHalfRounding(const NativeStream& stream) {
+double squaresOfRounding(const NativeStream& stream, bool isToHalf) {
+  const auto rounded = [&](double value) {
+    return isToHalf ? static_cast<float>(half(roundedToOdd(value))) : static_cast<float>(value);
+  };
   double squares = 0;
   for (std::size_t c = 0; c < stream.components.types().size(); ++c) {
     const Column column(stream, c);
     if (column.scalar != Scalar::Float) continue;
     for (std::int64_t i = 0; i < stream.shape.size(); ++i) {
-      const double value = column.at(i), change = static_cast<float>(half(roundedToOdd(value))) - value;
+      const double value = column.at(i), change = rounded(value) - value;
       if (std::isfinite(change)) squares += change * change;
     }
   }

@@ -73,6 +73,8 @@ struct OutputErrors {
   double relativeIntegers() const;
   /// The share of the total error that the call added itself, by projection on the total: 0 to 1.
   double ownShare() const;
+  /// Likewise, but below 0 if its own errors make those of its inputs smaller, and above 1 if these make its own ones smaller.
+  double signedOwnShare() const;
   double scale() const;  ///< the root mean square of the reference's components
   /// The root mean square of the total error; 0 if no components are finite.
   double absoluteTotal() const;
@@ -96,8 +98,8 @@ bool isReal(program::Scalar scalar);
 /// How many of an element's components are.
 std::int64_t realComponents(const program::Element& element);
 
-/// Sum over all floats of the square of what rounding to half changes.
-double squaresOfHalfRounding(const NativeStream& stream);
+/// Sum over all floats of the square of what rounding to half, or else to float, changes.
+double squaresOfRounding(const NativeStream& stream, bool isToHalf);
 
 /// A component of an element, as a double; integers beyond 2^53 are rounded.
 double valueAt(const NativeStream& stream, int component, std::int64_t element);

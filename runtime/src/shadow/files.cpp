@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadow/files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -37,11 +38,11 @@ std::string replaceFile(const std::string& file, std::string_view text) {
   return fmt::format("cannot write '{}': {}", file, std::strerror(error));
 }
 
-std::string otherName(const std::string& file) {
-  const std::size_t dot = file.rfind('.');
+std::string otherName(const std::string& name, const std::vector<std::string>& endings) {
   for (int number = 2;; ++number) {
-    const std::string other = fmt::format("{}-{}{}", file.substr(0, dot), number, file.substr(dot));
-    if (fileMark(other).empty()) return other;
+    const std::string other = fmt::format("{}-{}", name, number);
+    if (std::ranges::all_of(endings, [&](const auto& ending) { return fileMark(other + ending).empty(); }))
+      return other;
   }
 }
 

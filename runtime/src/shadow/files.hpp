@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sk::shadow {
 
@@ -15,7 +16,7 @@ std::string fileMark(const std::string& file);
 /// Replaces a file. Returns what went wrong; empty if nothing did.
 std::string replaceFile(const std::string& file, std::string_view text);
 
-/// Another name for a file: report-2.html, the first that does not exist.
-std::string otherName(const std::string& file);
+/// Another name for files that differ in their endings: report-2, the first with which none of them exists.
+std::string otherName(const std::string& name, const std::vector<std::string>& endings);
 
 }  // namespace sk::shadow

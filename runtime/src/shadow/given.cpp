@@ -8,8 +8,11 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "device/region.hpp"
+#include "shadow/copies.hpp"
+#include "shadow/errors.hpp"
 #include "shadow/recorder.hpp"
 #include "sk/host_vector.hpp"
 #include "sk/scalar_bytes.hpp"
@@ -19,7 +22,6 @@
 namespace sk {
 
 using program::Role;
-using program::Scalar;
 using shadow::GivenRecord;
 using shadow::Recorder;
 using shadow::Setting;
@@ -41,7 +43,7 @@ T integer(double value) {
   return static_cast<T>(value);
 }
 
-void setNumber(double value, std::byte* bytes, Scalar scalar) {
+void setNumber(double value, std::byte* bytes, program::Scalar scalar) {
   withScalarType(scalar, [&]<class T>(T) {
     if constexpr (std::is_same_v<T, bool>) {
       stored(value != 0, bytes);
@@ -72,24 +74,24 @@ void forNumbers(const program::Element& element, Use&& use) {
 }
 
 /// `storage`: of the stream that holds them, or Single.
-std::string typeName(Scalar scalar, Storage storage) {
+std::string typeName(program::Scalar scalar, Storage storage) {
   switch (scalar) {
-    case Scalar::Float: return storage == Storage::Half ? "half" : "float";
-    case Scalar::Double: return "double";
-    case Scalar::Half: return "half";
-    case Scalar::Unorm8: return "unorm8";
-    case Scalar::Snorm8: return "snorm8";
-    case Scalar::Unorm16: return "unorm16";
-    case Scalar::Snorm16: return "snorm16";
-    case Scalar::Bool: return "bool";
-    case Scalar::Uint:
-    case Scalar::Ulong:
-    case Scalar::Uchar:
-    case Scalar::Ushort: return "uint";
-    case Scalar::Int:
-    case Scalar::Long:
-    case Scalar::Char:
-    case Scalar::Short: break;
+    case program::Scalar::Float: return storage == Storage::Half ? "half" : "float";
+    case program::Scalar::Double: return "double";
+    case program::Scalar::Half: return "half";
+    case program::Scalar::Unorm8: return "unorm8";
+    case program::Scalar::Snorm8: return "snorm8";
+    case program::Scalar::Unorm16: return "unorm16";
+    case program::Scalar::Snorm16: return "snorm16";
+    case program::Scalar::Bool: return "bool";
+    case program::Scalar::Uint:
+    case program::Scalar::Ulong:
+    case program::Scalar::Uchar:
+    case program::Scalar::Ushort: return "uint";
+    case program::Scalar::Int:
+    case program::Scalar::Long:
+    case program::Scalar::Char:
+    case program::Scalar::Short: break;
   }
   return "int";
 }
@@ -114,7 +116,7 @@ std::size_t recordFor(shadow::Report& report, const program::Kernel& kernel,
   record.parameter = parameter.name;
   record.type = element.name;
   bool isFirst = true;
-  forNumbers(element, [&](Scalar scalar, std::size_t) {
+  forNumbers(element, [&](program::Scalar scalar, std::size_t) {
     if (std::exchange(isFirst, false)) record.scalar = typeName(scalar, storage);
   });
   narrowRange(record, parameter.range);
@@ -124,7 +126,7 @@ std::size_t recordFor(shadow::Report& report, const program::Kernel& kernel,
 void addElements(GivenRecord& record, const program::Element& element, const std::byte* bytes,
                  std::int64_t count) {
   for (std::int64_t i = 0; i < count; ++i, bytes += element.size) {
-    forNumbers(element, [&](Scalar scalar, std::size_t offset) {
+    forNumbers(element, [&](program::Scalar scalar, std::size_t offset) {
       const double value = numberAt(bytes + offset, scalar);
       record.low = std::fmin(record.low, value);
       record.high = std::fmax(record.high, value);
@@ -138,17 +140,65 @@ bool concerns(const Setting& setting, const program::Kernel& kernel, const progr
   return setting.parameter == parameter.name && shadow::matchesAny({setting.kernel}, kernel.name);
 }
 
-/// Sets an element, or all of them. Returns whether there is such an element.
-bool apply(const Setting& setting, const program::Element& element, std::byte* bytes, std::int64_t count) {
-  if (setting.element >= count) return false;
-  const std::int64_t begin = std::max<std::int64_t>(setting.element, 0);
-  const std::int64_t end = setting.element < 0 ? count : setting.element + 1;
-  for (std::int64_t i = begin; i < end; ++i) {
-    forNumbers(element, [&](Scalar scalar, std::size_t offset) {
+/// Sets the numbers of elements.
+void apply(const Setting& setting, const program::Element& element, std::byte* bytes, std::int64_t count) {
+  for (std::int64_t i = 0; i < count; ++i) {
+    forNumbers(element, [&](program::Scalar scalar, std::size_t offset) {
       setNumber(setting.value, bytes + i * element.size + offset, scalar);
     });
   }
-  return true;
+}
+
+/// Whether host memory, which has floats, holds less than the stream does.
+bool isWiderThanHost(const ShadowStream& stream) {
+  return stream.storage >= Storage::Extended && holdsOnlyFloats(*stream.element);
+}
+
+/// Adds the elements of a stream that the host has written.
+void addStream(GivenRecord& record, ShadowStream& stream) {
+  const StreamRegion all = detail::wholeRegion(&stream.inner());
+  const std::int64_t count = stream.shape.size();
+  if (isWiderThanHost(stream)) {
+    for (const double value : detail::readReals(all)) {
+      record.low = std::fmin(record.low, value);
+      record.high = std::fmax(record.high, value);
+    }
+    record.elements = std::max(record.elements, count);
+    ++record.times;
+    return;
+  }
+  auto bytes = detail::hostVector<std::byte>(bytesOf(count, stream.element->size));
+  detail::read(all, bytes.data(), static_cast<std::size_t>(count));
+  addElements(record, *stream.element, bytes.data(), count);
+}
+
+/// The element that a setting names, or all of them.
+StreamRegion regionFor(const Setting& setting, ShadowStream& stream) {
+  StreamRegion region = detail::wholeRegion(&stream);
+  if (setting.element < 0) return region;
+  std::int64_t number = setting.element;
+  for (int d = region.shape.rank() - 1; d >= 0; --d) {
+    region.begin[d] = number % region.shape[d];
+    number /= region.shape[d];
+    region.shape = region.shape.with(d, 1);
+  }
+  return region;
+}
+
+/// Sets elements of a stream. Writes no others: those of a wide stream would be rounded on their way through host memory.
+void apply(const Setting& setting, ShadowStream& stream) {
+  const StreamRegion region = regionFor(setting, stream);
+  const program::Element& element = *stream.element;
+  const std::int64_t count = region.shape.size();
+  if (isWiderThanHost(stream)) {
+    const std::int64_t numbers = count * shadow::realComponents(element);
+    return stream.writeReals(region,
+                             std::vector<double>(static_cast<std::size_t>(numbers), setting.value).data());
+  }
+  auto bytes = detail::hostVector<std::byte>(bytesOf(count, element.size));
+  detail::read(stream.innerOf(region), bytes.data(), static_cast<std::size_t>(count));
+  apply(setting, element, bytes.data(), count);
+  stream.write(region, bytes.data());
 }
 
 }  // namespace
@@ -186,8 +236,9 @@ void GivenArguments::examineValue(std::size_t argument) {
   for (std::size_t i = 0; i < options.settings.size(); ++i) {
     const Setting& setting = options.settings[i];
     if (!concerns(setting, call_.kernel, parameter)) continue;
+    if (setting.element > 0) continue;  // there is one
     values_.emplace_back(given, given + element.size);
-    if (!apply(setting, element, values_.back().data(), 1)) continue;
+    apply(setting, element, values_.back().data(), 1);
     arguments_[argument].value = values_.back().data();
     device_.recorder().noteApplied(i);
   }
@@ -203,28 +254,21 @@ void GivenArguments::examineStream(std::size_t argument, ShadowStream& stream) {
     narrowRange(report->given[number], parameter.range);
     return;
   }
-  const program::Element& element = *stream.element;
-  const std::int64_t count = stream.shape.size();
-  auto bytes = detail::hostVector<std::byte>(bytesOf(count, element.size));
-  detail::read(detail::wholeRegion(&stream.inner()), bytes.data(), static_cast<std::size_t>(count));
   int record = 0;
   if (options.listsGiven) {
     Recorder::Access report(device_.recorder());
-    const std::size_t number = recordFor(*report, call_.kernel, parameter, element, stream.storage);
+    const std::size_t number = recordFor(*report, call_.kernel, parameter, *stream.element, stream.storage);
     report->given[number].isStream = true;
     report->given[number].stream = stream.name;
-    addElements(report->given[number], element, bytes.data(), count);
+    addStream(report->given[number], stream);
     record = static_cast<int>(number);
   }
-  bool isChanged = false;
   for (std::size_t i = 0; i < options.settings.size(); ++i) {
     const Setting& setting = options.settings[i];
-    if (!concerns(setting, call_.kernel, parameter) || !apply(setting, element, bytes.data(), count))
-      continue;
+    if (!concerns(setting, call_.kernel, parameter) || setting.element >= stream.shape.size()) continue;
+    apply(setting, stream);
     device_.recorder().noteApplied(i);
-    isChanged = true;
   }
-  if (isChanged) stream.write(detail::wholeRegion(&stream), bytes.data());
   stream.last.given = record;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "sk/program.hpp"
 
@@ -30,8 +31,22 @@ class Influences {
     return found == factors_.end() ? std::nullopt : std::optional(found->second);
   }
 
+  /// What the last compared call of a kernel has shown of an output.
+  struct Compared {
+    double own = 0;  ///< the error that it has added, relative
+    double amplification = 1;  ///< of the errors of its inputs
+  };
+  void setCompared(const program::Kernel& kernel, std::size_t output, const Compared& compared) {
+    compared_[{&kernel, output}] = compared;
+  }
+  Compared comparedOf(const program::Kernel& kernel, std::size_t output) const {
+    const auto found = compared_.find({&kernel, output});
+    return found == compared_.end() ? Compared{} : found->second;
+  }
+
  private:
   std::map<const program::Kernel*, std::int64_t> asked_;
+  std::map<std::pair<const program::Kernel*, std::size_t>, Compared> compared_;
   std::map<std::tuple<const program::Kernel*, std::size_t, std::size_t>, double> factors_;
 };
 

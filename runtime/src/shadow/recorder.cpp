@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -44,9 +48,25 @@ void writeReportAtExit() {
   if (ofThisProcess != nullptr) ofThisProcess->writeAtExit();
 }
 
+constinit std::terminate_handler earlierHandler = nullptr;
+
+/// An exception that nothing catches ends the program without its devices' destructors and without exit().
+[[noreturn]] void writeReportAndTerminate() {
+  if (ofThisProcess != nullptr) ofThisProcess->writeAtTermination();
+  if (earlierHandler != nullptr) earlierHandler();
+  std::abort();
+}
+
+/// The same file whatever folder the program changes to later.
+void makeAbsolute(std::string& file) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, error);
+  if (!file.empty() && !error) file = absolute.string();
+}
+
 }  // namespace
 
-Recorder* Recorder::ofProcess(std::string_view option, const std::string& device) {
+Recorder* Recorder::ofProcess(std::string_view option) {
   const std::lock_guard lock(processMutex);
   if (ofThisProcess != nullptr || hasFailed) return ofThisProcess;
   hasFailed = true;
@@ -54,7 +74,7 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
     Options options = parseOptions(option);
     const std::string process = rankOfProcess().ranks > 1 ? "ranks" : std::to_string(::getpid());
     for (std::string* const file : {&options.report, &options.inputs}) *file = withProcess(*file, process);
-    auto* const made = new Recorder(std::move(options), device);
+    auto* const made = new Recorder(std::move(options));
     const bool isFirst = made->report_.rank == 0;
     if (isFirst) ::unlink((made->options().json() + ".ranks").c_str());  // of a run that was cut off
     const std::string problem = isFirst ? replaceFile(made->options().report, "") : "";
@@ -63,8 +83,11 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
       delete made;
       return nullptr;
     }
-    made->write(false);
+    for (std::string* const file : {&made->report_.options.report, &made->report_.options.inputs})
+      makeAbsolute(*file);
+    made->write(Ending::None);
     std::atexit(writeReportAtExit);
+    earlierHandler = std::set_terminate(writeReportAndTerminate);
     hasFailed = false;
     ofThisProcess = made;
   } catch (const Error& error) {
@@ -76,11 +99,10 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
   return ofThisProcess;
 }
 
-Recorder::Recorder(Options options, const std::string& device) : process_(::getpid()) {
+Recorder::Recorder(Options options) : process_(::getpid()) {
   report_.options = std::move(options);
   applied_.resize(report_.options.settings.size());
   report_.program = commandLine();
-  report_.device = device;
   const RankOfProcess process = rankOfProcess();
   report_.rank = process.rank;
   report_.ranks = process.ranks;
@@ -144,21 +166,42 @@ void Recorder::writeSometimes() {
   const auto now = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    if (now - lastWrite_ < std::clamp(lastWrite_ - start_, shortest, longest)) return;
+    const std::int64_t calls = report_.calls;
+    const bool isFirst =
+        now - start_ < shortest && (calls & (calls - 1)) == 0;  // the first, second, fourth ...
+    if (!isFirst && now - lastWrite_ < std::clamp(lastWrite_ - start_, shortest, longest)) return;
     lastWrite_ = now;
   }
-  write(false);
+  write(Ending::None);
 }
 
-void Recorder::write(bool hasEnded) {
+void Recorder::write(Ending ending) {
   if (!isInOwnProcess()) return;
   const std::lock_guard lock(mutex_);
+  writeLocked(ending);
+}
+
+namespace {
+
+std::string endedText(Recorder::Ending ending, std::int64_t calls) {
+  switch (ending) {
+    case Recorder::Ending::Normal: return "normally";
+    case Recorder::Ending::Exception: return fmt::format("early: an exception after {} calls", calls);
+    case Recorder::Ending::None: break;
+  }
+  return fmt::format("early: the program had not ended after {} calls", calls);
+}
+
+}  // namespace
+
+void Recorder::writeLocked(Ending ending) {
+  const bool hasEnded = ending != Ending::None;
   try {
     Report report = report_;
     report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    report.ended =
-        hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
-    for (std::size_t i = 0; hasEnded && i < applied_.size(); ++i) {
+    report.ended = endedText(ending, report.calls);
+    if (!hasDevice_ && !whyAlone_.empty()) report.notes.insert(report.notes.begin(), whyAlone_);
+    for (std::size_t i = 0; ending == Ending::Normal && i < applied_.size(); ++i) {
       if (applied_[i]) continue;
       const Setting& setting = report.options.settings[i];
       report.notes.push_back(fmt::format("set={}.{} has changed nothing: the host gives no such number",
@@ -174,37 +217,63 @@ void Recorder::write(bool hasEnded) {
         const std::size_t count = reports.size();
         Report all = merged(std::move(reports));
         all.options = report.options;
-        all.ended = count == static_cast<std::size_t>(report.ranks)
-                        ? "normally"
-                        : fmt::format("early: {} of {} ranks have ended", count, report.ranks);
-        conclude(all);
-        writeFiles(all);
+        const bool isLast = count == static_cast<std::size_t>(report.ranks);
+        all.ended =
+            isLast ? "normally" : fmt::format("early: {} of {} ranks have ended", count, report.ranks);
+        finish(all, isLast);
       });
       return;
     }
-    conclude(report);
-    writeFiles(report);
+    finish(report, ending == Ending::Normal);
   } catch (const std::exception& error) {
     say(fmt::format("the report could not be written: {}", error.what()));
   }
 }
 
+void Recorder::finish(Report& report, bool isLast) {
+  if (isLast) {
+    for (const std::string& text : unmatchedPatterns(report)) {
+      report.notes.push_back(text);
+      if (std::ranges::find(said_, text) != said_.end()) continue;
+      said_.push_back(text);
+      say(text);
+    }
+  }
+  conclude(report);
+  writeFiles(report);
+}
+
 void Recorder::writeFiles(const Report& report) {
   const std::string json = toJson(report);
-  const auto replace = [&](std::string& file, std::string& mark, std::string_view text) {
+  if (jsonFile_.empty()) jsonFile_ = report_.options.json();
+  const bool hasPage = report_.options.report != jsonFile_;
+  const auto isOfOthers = [&](const std::string& file, const std::string& mark) {
     const std::string now = fileMark(file);
-    const bool isOfOthers = report.ranks == 1 && !mark.empty() && !now.empty() && now != mark;
-    if (isOfOthers) {
-      const std::string other = otherName(file);
-      say(fmt::format("the program has written '{}' itself; the report goes to '{}'", file, other));
-      file = other;
+    return report.ranks == 1 && !mark.empty() && !now.empty() && now != mark;
+  };
+  // the page and its JSON keep names that go together
+  for (const auto& [file, mark] :
+       {std::pair{&report_.options.report, &lastPage_}, std::pair{&jsonFile_, &lastJson_}}) {
+    if (!isOfOthers(*file, *mark)) continue;
+    for (const auto& [each, ours] :
+         {std::pair{report_.options.report, lastPage_}, std::pair{jsonFile_, lastJson_}}) {
+      if (fileMark(each) == ours) ::unlink(each.c_str());  // an earlier report, without its other half
     }
+    const std::string before = *file,
+                      ending = report_.options.report.substr(report_.options.report.rfind('.'));
+    const std::string other = otherName(jsonFile_.substr(0, jsonFile_.rfind('.')), {".json", ending});
+    report_.options.report = other + ending;
+    jsonFile_ = other + ".json";
+    say(fmt::format("the program, or another one, has written '{}' itself; the report goes to '{}'", before,
+                    report_.options.report));
+    break;
+  }
+  const auto replace = [&](const std::string& file, std::string& mark, std::string_view text) {
     const std::string problem = replaceFile(file, text);
     if (!problem.empty()) say(problem);
     mark = fileMark(file);
   };
-  if (jsonFile_.empty()) jsonFile_ = report_.options.json();
-  if (report_.options.report != jsonFile_) replace(report_.options.report, lastPage_, reportPage(json));
+  if (hasPage) replace(report_.options.report, lastPage_, reportPage(json));
   replace(jsonFile_, lastJson_, json);
 }
 
@@ -215,7 +284,32 @@ void Recorder::writeAtExit() {
     const std::lock_guard lock(mutex_);
     isDue = devices_ > 0 || report_.ranks > 1;
   }
-  if (isDue) write(true);
+  if (isDue) write(Ending::Normal);
+  if (!hasDevice_ && isInOwnProcess() && !whyAlone_.empty()) say(whyAlone_);
+}
+
+void Recorder::writeAtTermination() {
+  if (!isInOwnProcess()) return;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (lock.owns_lock())
+    writeLocked(Ending::Exception);  // else the exception has left a function of the recorder
+}
+
+void Recorder::deviceBegins(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  ++devices_;
+  if (!std::exchange(hasDevice_, true)) report_.device = name;
+}
+
+void Recorder::deviceStaysAlone(const std::string& name, const std::string& why) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (hasDevice_) return;
+    report_.device = name;
+    whyAlone_ = why;
+    if (report_.ranks > 1) return;
+  }
+  write(Ending::Normal);
 }
 
 void Recorder::deviceEnds() {
@@ -224,7 +318,7 @@ void Recorder::deviceEnds() {
     const std::lock_guard lock(mutex_);
     isLast = --devices_ == 0 && report_.ranks == 1;
   }
-  if (isLast) write(true);
+  if (isLast) write(Ending::Normal);
 }
 
 }  // namespace sk::shadow

@@ -24,7 +24,7 @@ class Recorder {
  public:
   /// The recorder of this process, made by the first call; null if the report cannot be written or SK_SHADOW is not valid, which
   /// has been said on standard error then.
-  static Recorder* ofProcess(std::string_view option, const std::string& device);
+  static Recorder* ofProcess(std::string_view option);
 
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -57,17 +57,28 @@ class Recorder {
   /// Adds a note once.
   void note(const std::string& text);
 
+  /// How the program has ended: Normal if no device is left.
+  enum class Ending : std::uint8_t { None, Normal, Exception };
+
   /// Writes the report if the last one is some seconds old.
   void writeSometimes();
-  /// Writes the report as it is now. `ended`: no device is left.
-  void write(bool hasEnded);
+  /// Writes the report as it is now.
+  void write(Ending ending);
 
-  void deviceBegins() { ++devices_; }
+  /// A device has a shadow. The report names the first one.
+  void deviceBegins(const std::string& name);
   void deviceEnds();
   void writeAtExit();
+  /// Nothing catches an exception.
+  void writeAtTermination();
+  /// A device has no shadow, for a reason that the report gives unless another device has one.
+  void deviceStaysAlone(const std::string& name, const std::string& why);
 
  private:
-  Recorder(Options options, const std::string& device);
+  explicit Recorder(Options options);
+  void writeLocked(Ending ending);
+  /// Concludes a report and writes it. `isLast`: no other follows.
+  void finish(Report& report, bool isLast);
   void writeFiles(const Report& report);
 
   std::mutex mutex_;
@@ -76,6 +87,9 @@ class Recorder {
   std::map<std::string, RecordedInputs> inputs_;  ///< of each kernel's worst call, if they are asked for
   const int process_;
   int devices_ = 0;
+  bool hasDevice_ = false;  ///< some device has had a shadow
+  std::string whyAlone_;  ///< a device has none
+  std::vector<std::string> said_;  ///< notes that have gone to standard error, too
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point lastWrite_ = start_;
   std::string jsonFile_;

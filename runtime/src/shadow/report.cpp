@@ -7,8 +7,11 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "assemble/nearest_word.hpp"
 
 namespace sk::shadow {
 
@@ -52,6 +55,7 @@ void Series::raise(const Series& other) {
 }
 
 std::string_view Report::nameOf(int kernel) const {
+  if (kernel == notCompared) return "(calls that were not compared)";
   if (kernel < 0) return "(written by the host)";
   return kernels[static_cast<std::size_t>(kernel)].name;
 }
@@ -111,20 +115,32 @@ bool isGrave(const ResultRecord* result, double limit) {
   return result != nullptr && (result->largest > limit || result->differs > 0);
 }
 
+Verdict decisionVerdict(const Report& report, const DecisionRecord& each) {
+  const std::string kernel(report.nameOf(each.kernel));
+  const std::string elements = each.elements == 1 ? "one element" : fmt::format("{} elements", each.elements);
+  return {"decision", kernel,
+          fmt::format("{} decides differently than in double for {} in call {}{}: {}{} is {:.9g}, not {:.9g}",
+                      kernel, elements, each.first.call, each.isInherited ? ", as its inputs differ" : "",
+                      each.first.output, where(each.first.index), each.first.device, each.first.reference),
+          each.first.call};
+}
+
 /// `areInherited`: those that differ since the inputs of the call do.
 void addDecisions(Report& report, bool areInherited) {
   for (const DecisionRecord& each : report.decisions) {
-    if (each.isInherited != areInherited) continue;
-    const std::string kernel(report.nameOf(each.kernel));
-    const std::string elements =
-        each.elements == 1 ? "one element" : fmt::format("{} elements", each.elements);
-    report.verdicts.push_back(
-        {"decision", kernel,
-         fmt::format("{} decides differently than in double for {} in call {}{}: {}{} is {:.9g}, not {:.9g}",
-                     kernel, elements, each.first.call, areInherited ? ", as its inputs differ" : "",
-                     each.first.output, where(each.first.index), each.first.device, each.first.reference),
-         each.first.call});
+    if (each.isInherited == areInherited) report.verdicts.push_back(decisionVerdict(report, each));
   }
+}
+
+/// Keys that are as right as floats are may ask for another order, and all differences after it are those of another history: the
+/// first such order, if no call has made a decision of its own before.
+void addOrder(Report& report) {
+  constexpr double rounding = 1e-5;
+  const auto first = std::ranges::min_element(report.decisions, {}, [](const DecisionRecord& each) {
+    return std::pair(each.first.call, each.isInherited);
+  });
+  if (first == report.decisions.end() || !(first->ofKeys < rounding) || !first->ofKeys) return;
+  report.verdicts.push_back(decisionVerdict(report, *first));
 }
 
 /// How the error of an output grows from call to call, if it does so exponentially and not as rounding errors add up.
@@ -194,24 +210,55 @@ Growth growthOf(const Series& series) {
   return points.size() >= few ? shortGrowth(points) : Growth{};
 }
 
-/// An instability shows in most of what the program computes over and over again.
-std::optional<Verdict> unstableVerdict(const Report& report) {
+/// Whether a kernel's outputs reach its own inputs, directly or through other kernels: errors grow in such a cycle, and what only
+/// looks at them, as a total does, shows it.
+bool readsItself(const Report& report, int kernel) {
+  std::vector<bool> isReached(report.kernels.size());
+  std::vector<int> open{kernel};
+  while (!open.empty()) {
+    const auto from = static_cast<std::size_t>(open.back());
+    open.pop_back();
+    for (const int source : report.kernels[from].readFrom) {
+      if (source == kernel) return true;
+      if (source < 0 || isReached[static_cast<std::size_t>(source)]) continue;
+      isReached[static_cast<std::size_t>(source)] = true;
+      open.push_back(source);
+    }
+  }
+  return false;
+}
+
+struct Growing {
+  const KernelRecord* kernel = nullptr;
+  Growth growth;
+};
+
+/// The kernel with the fastest growth among kernels, if errors grow in most of what these compute over and over again: an
+/// instability shows in most of it.
+template <class Counts>
+Growing fastestAmong(const Report& report, Counts&& counts) {
   constexpr std::int64_t often = 4;
-  const KernelRecord* worst = nullptr;
-  Growth fastest;
+  Growing fastest;
   int growing = 0, steady = 0;
-  for (const KernelRecord& kernel : report.kernels) {
-    if (kernel.amplification.count() < often) continue;
+  for (std::size_t i = 0; i < report.kernels.size(); ++i) {
+    const KernelRecord& kernel = report.kernels[i];
+    if (kernel.amplification.count() < often || !counts(static_cast<int>(i))) continue;
     for (const OutputRecord& output : kernel.outputs) {
       if (output.points.points().empty()) continue;
       const Growth growth = growthOf(output.points);
       (growth.factor > 1 ? growing : steady) += 1;
-      if (growth.factor <= fastest.factor) continue;
-      fastest = growth;
-      worst = &kernel;
+      if (growth.factor > fastest.growth.factor) fastest = {&kernel, growth};
     }
   }
-  if (worst == nullptr || growing < steady) return std::nullopt;
+  return growing < steady ? Growing{} : fastest;
+}
+
+/// Feedback may pass through the host, which nobody sees: then all kernels count.
+std::optional<Verdict> unstableVerdict(const Report& report) {
+  Growing found = fastestAmong(report, [&](int kernel) { return readsItself(report, kernel); });
+  if (found.kernel == nullptr) found = fastestAmong(report, [](int) { return true; });
+  const auto& [worst, fastest] = found;
+  if (worst == nullptr) return std::nullopt;
   const double others = static_cast<double>(report.calls) / static_cast<double>(worst->calls);
   const std::string growth =
       fmt::format("the error grows by a factor of {:.4g} with each call of {}, for {:.0f} calls",
@@ -241,28 +288,37 @@ const KernelRecord* worstByShare(const Report& report) {
   return worst == report.kernels.end() || !(worst->share > 0) ? nullptr : &*worst;
 }
 
+double shareOf(const ResultRecord& result, int kernel) {
+  const auto found = std::ranges::find(result.shares.all(), kernel, &Share::kernel);
+  return found == result.shares.all().end() ? 0 : found->share;
+}
+
 void addShares(Report& report, const ResultRecord* result) {
   const KernelRecord* worst = worstByShare(report);
   if (result == nullptr || !(result->largest > 0)) return;
-  const auto host = std::ranges::find(result->shares.all(), writtenByHost, &Share::kernel);
-  const double ofHost = host == result->shares.all().end() ? 0 : host->share;
+  const double ofHost = shareOf(*result, writtenByHost), unknown = shareOf(*result, notCompared),
+               ofWorst = worst == nullptr ? 0 : worst->share;
+  const std::string survivors = fmt::format("{} of '{}' survive", digitsOf(result->largest), result->name);
   const auto add = [&](const std::string& whose) {
-    report.verdicts.push_back({"error", "",
-                               fmt::format("{} of the error of what the program reads: {} of '{}' survive",
-                                           whose, digitsOf(result->largest), result->name),
-                               0});
+    report.verdicts.push_back(
+        {"error", "", fmt::format("{} of the error of what the program reads: {}", whose, survivors), 0});
   };
-  if (worst == nullptr || ofHost > worst->share)
+  if (unknown > std::max(ofHost, ofWorst))
+    return add(fmt::format("calls that were not compared (every=, kernels=) add {:.0f} %", 100 * unknown));
+  if (ofHost > ofWorst || worst == nullptr)
     return add(fmt::format("what the host has written or copied brings {:.0f} %", 100 * ofHost));
   if (worst->followed == 0)
-    return add(fmt::format("{} and calls before it, which are not compared, add {:.0f} %", worst->name,
-                           100 * worst->share));
+    return add(fmt::format("{}, which is not compared, adds {:.0f} %", worst->name, 100 * worst->share));
   const std::string choices = worst->choices.empty() ? "" : fmt::format(" ({})", worst->choices);
-  report.verdicts.push_back(
-      {"error", worst->name,
-       fmt::format("{}{} adds {:.0f} % of the error of what the program reads: {} of '{}' survive",
-                   worst->name, choices, 100 * worst->share, digitsOf(result->largest), result->name),
-       worst->worst ? worst->worst->call : 0});
+  const std::string whose = fmt::format("{}{} adds {:.0f} % of the error of what the program reads",
+                                        worst->name, choices, 100 * worst->share);
+  const std::int64_t call = worst->worst ? worst->worst->call : 0;
+  if (!worst->isStored())
+    return report.verdicts.push_back({"error", worst->name, fmt::format("{}: {}", whose, survivors), call});
+  report.verdicts.push_back({"storage", worst->name,
+                             fmt::format("{}, mostly by storing {}: {}; store it in {}", whose, worst->stored,
+                                         survivors, worst->storedBetter),
+                             call});
 }
 
 void addFlushes(Report& report) {
@@ -290,7 +346,7 @@ void addLost(Report& report) {
 }
 
 void addRest(Report& report, const ResultRecord* result) {
-  if (report.calls == 0) {
+  if (report.calls == 0 && report.notes.empty()) {
     report.verdicts.push_back({"nothing", "", "the program has called no kernel", 0});
   } else if (report.followed == 0) {
     report.verdicts.push_back({"nothing", "", "no call was compared; the notes say why", 0});
@@ -313,6 +369,26 @@ void addRest(Report& report, const ResultRecord* result) {
 
 }  // namespace
 
+std::vector<std::string> unmatchedPatterns(const Report& report) {
+  std::vector<std::string> names, all;
+  for (const KernelRecord& kernel : report.kernels) names.push_back(kernel.name);
+  if (names.empty()) return all;
+  const auto add = [&](std::string_view option, const std::vector<std::string>& patterns) {
+    for (const std::string& pattern : patterns) {
+      if (std::ranges::any_of(names, [&](const std::string& name) { return matchesAny({pattern}, name); }))
+        continue;
+      std::string word = pattern;
+      std::erase(word, '*');
+      const std::string_view near = assemble::nearestWord(word, names);
+      all.push_back(fmt::format("{}={} matches no kernel that the program has called{}", option, pattern,
+                                near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    }
+  };
+  add("kernels", report.options.kernels);
+  add("quad", report.options.quad);
+  return all;
+}
+
 void conclude(Report& report) {
   shareErrors(report);
   const ResultRecord* result = worstResult(report);
@@ -322,6 +398,7 @@ void conclude(Report& report) {
   if (isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, false);
   const bool hasDecided = isGrave(result, 1e-4);
+  if (hasDecided) addOrder(report);
   if (hasDecided) addDecisions(report, false);
   if (unstable && !isHarmless && !isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, true);

@@ -23,6 +23,7 @@ struct Input {
   std::string parameter;
   double value;
   bool isReal = true;
+  std::vector<std::int64_t> at = {};  ///< of a gather: the element's index in it, rows first
 };
 
 /// An element of an output, and what it was computed from.
@@ -33,6 +34,7 @@ struct ElementRecord {
   double device = 0, reference = 0;  ///< the reference computes with the device's inputs
   bool isReal = true;
   std::vector<Input> inputs;
+  std::string source;  ///< what it was computed from, if that is more or less than the inputs say
 };
 
 /// The largest of several errors, and their geometric mean.
@@ -108,7 +110,15 @@ struct KernelRecord {
   std::optional<ElementRecord> worst;
   double worstError = 0;  ///< relative to the scale of its output
   std::int64_t nans = 0, infinities = 0, flushed = 0, decisions = 0;
+  double ownSquares = 0, storedSquares = 0;  ///< sums over calls: of own errors, and of storing in them
+  std::string stored,
+      storedBetter;  ///< "'v' in halves", "floats"; empty if its outputs hold what it computes
+  std::vector<int> readFrom;  ///< kernels whose outputs it has read
+  bool compensates = false;  ///< its own errors have made those of others smaller
   std::string choices;  ///< the options of its calls that are not the default: "precision half"
+
+  /// Whether most of its own errors is rounding on storing.
+  bool isStored() const { return storedSquares > 0.5 * ownSquares; }
   std::vector<OutputRecord> outputs;
 };
 
@@ -181,6 +191,7 @@ struct DecisionRecord {
   std::int64_t elements;
   bool isInherited;
   ElementRecord first;
+  std::optional<double> ofKeys = {};  ///< of an order: the relative error of the keys
 };
 
 struct Verdict {
@@ -210,6 +221,9 @@ struct Report {
 
 /// Computes what follows from the rest: each kernel's share of the results' errors, and the verdicts, the gravest first.
 void conclude(Report& report);
+
+/// Patterns of the options kernels= and quad= that match no kernel of a program that has ended: a sentence for each.
+std::vector<std::string> unmatchedPatterns(const Report& report);
 
 /// The report as JSON (docs/json.md).
 std::string toJson(const Report& report);

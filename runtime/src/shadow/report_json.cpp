@@ -49,17 +49,20 @@ std::string texts(const std::vector<std::string>& all) {
 std::string inputs(const std::vector<Input>& all) {
   return list(all, [](const Input& input) {
     const std::string text = value(input.value, input.isReal);
-    return fmt::format(R"({{"parameter":{},{},"reference":null}})", jsonString(input.parameter),
+    const std::string at = input.at.empty() ? "" : fmt::format(R"("at":{},)", indexText(input.at));
+    return fmt::format(R"({{"parameter":{},{}{},"reference":null}})", jsonString(input.parameter), at,
                        std::string_view(text).substr(1, text.size() - 2));
   });
 }
 
 /// The members of an element, without braces.
 std::string element(const ElementRecord& record) {
-  return fmt::format(R"("call":{},"output":{},"element":{},"device":{},"reference":{},"inputs":{})",
+  const std::string source =
+      record.source.empty() ? "" : fmt::format(R"(,"source":{})", jsonString(record.source));
+  return fmt::format(R"("call":{},"output":{},"element":{},"device":{},"reference":{},"inputs":{}{})",
                      record.call, jsonString(record.output), indexText(record.index),
                      value(record.device, record.isReal), value(record.reference, record.isReal),
-                     inputs(record.inputs));
+                     inputs(record.inputs), source);
 }
 
 std::string spread(const Spread& errors) {
@@ -82,14 +85,14 @@ std::string kernel(const KernelRecord& record) {
   return fmt::format(
       R"({{"name":{},"calls":{},"followed":{},"seconds":{:.6f},"choices":{},"own":{},"storage":{},"inherited":{},)"
       R"("total":{},"amplification":{},"digits":{:.2f},"share":{},"worst":{},"nans":{},"infinities":{},)"
-      R"("flushed":{},"decisions":{},"outputs":{}}})",
+      R"("flushed":{},"decisions":{},"compensates":{},"outputs":{}}})",
       jsonString(record.name), record.calls, record.followed, record.seconds, jsonString(record.choices),
       spread(record.own), record.storage.isEmpty() ? "null" : spread(record.storage),
       spread(record.inherited), spread(record.total),
       record.amplification.isEmpty() ? "null" : spread(record.amplification),
       survivingDigits(record.total.largest()), number(record.share),
       record.worst ? "{" + element(*record.worst) + "}" : "null", record.nans, record.infinities,
-      record.flushed, record.decisions, outputs);
+      record.flushed, record.decisions, record.compensates, outputs);
 }
 
 std::string stream(const StreamRecord& record) {
@@ -183,8 +186,9 @@ std::string account(const Report& report) {
   }
   constexpr double hardly = 0.01, noticeable = 0.02;
   for (const KernelRecord& record : report.kernels) {
-    const bool isPrecise = shares > 0 && record.share < hardly && record.seconds > noticeable * all &&
-                           !record.own.isEmpty() && record.choices.find("half") == std::string::npos;
+    const bool isPrecise = shares > 0 && record.share < hardly && !record.compensates &&
+                           record.seconds > noticeable * all && !record.own.isEmpty() &&
+                           record.choices.find("half") == std::string::npos;
     if (isPrecise) precise.push_back(&record);
   }
   std::vector<const StreamRecord*> partly;

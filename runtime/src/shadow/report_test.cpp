@@ -42,6 +42,21 @@ KernelRecord kernelOf(const json& given) {
   return kernel;
 }
 
+/// Reads what `step` has computed, and computes what has the square of its error.
+KernelRecord lookingKernel(const KernelRecord& step) {
+  KernelRecord kernel;
+  kernel.name = "look";
+  kernel.calls = step.calls;
+  kernel.readFrom = {0};
+  OutputRecord& output = kernel.outputs.emplace_back();
+  for (Series::Point point : step.outputs[0].points.points()) {
+    kernel.amplification.add(1);
+    point.absolute *= point.absolute;
+    output.points.add(point);
+  }
+  return kernel;
+}
+
 ExceptionRecord exceptionOf(const json& given) {
   ExceptionRecord exception{};
   exception.kind = given[0] == "nan" ? ExceptionRecord::Kind::Nan : ExceptionRecord::Kind::Infinity;
@@ -54,6 +69,10 @@ Report reportOf(const json& given) {
   Report report;
   report.kernels.push_back(kernelOf(given));
   report.followed = report.kernels[0].calls;
+  if (given.value("watched", false)) {
+    report.kernels[0].readFrom = {0};
+    report.kernels.push_back(lookingKernel(report.kernels[0]));
+  }
   report.calls = report.followed * given.value("stride", 1);
   const json& error = given["result"];
   ResultRecord result;
@@ -67,6 +86,44 @@ Report reportOf(const json& given) {
 }
 
 }  // namespace
+
+TEST_CASE("no advice of less precision is given where errors make others smaller") {
+  Report report;
+  for (const char* const name : {"main", "correction"}) {
+    KernelRecord& kernel = report.kernels.emplace_back();
+    kernel.name = name;
+    kernel.calls = kernel.followed = 1;
+    kernel.seconds = 1;
+    kernel.own.add(1e-7);
+  }
+  report.calls = report.followed = 2;
+  ResultRecord& result = report.results.emplace_back();
+  result.name = "v";
+  result.largest = result.last = 1e-6;
+  result.shares.add(0, 1);
+  const auto adviceFor = [&] {
+    Report concluded = report;
+    conclude(concluded);
+    std::vector<std::string> kernels;
+    const json all = json::parse(toJson(concluded));
+    for (const json& each : all["account"]["precision"]) kernels.push_back(each["kernel"]);
+    return kernels;
+  };
+  CHECK(adviceFor() == std::vector<std::string>{"correction"});
+  report.kernels[1].compensates = true;
+  CHECK(adviceFor().empty());
+}
+
+TEST_CASE("a pattern that matches no kernel is named") {
+  Report report;
+  report.kernels.emplace_back().name = "heat::diffuse";
+  report.options.kernels = {"heat::*", "heat::difuse", "other::*"};
+  CHECK(
+      unmatchedPatterns(report) ==
+      std::vector<std::string>{
+          "kernels=heat::difuse matches no kernel that the program has called; did you mean 'heat::diffuse'?",
+          "kernels=other::* matches no kernel that the program has called"});
+}
 
 TEST_CASE("errors that grow are unstable, or grow as the solution does, or add up") {
   std::ifstream file(SK_GROWTH_CASES);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <utility>
 
@@ -60,13 +61,27 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
   result.differs += errors.decisions.count;
   result.notFinite = errors.newNans.count + errors.newInfinities.count;
   result.withoutValue = std::max(result.withoutValue, errors.nans.count + errors.infinities.count);
-  if (isWorst) result.shares = stream.errors.shares;
+  StreamErrors known = stream.errors;
+  known.measure(std::max(errors.relativeTotal(), errors.relativeIntegers()));
+  if (isWorst) result.shares = known.shares;
+  if (isWhole(region)) stream.errors = known;
   if (result.last > 0 && result.shares.all().empty()) result.shares.add(stream.last.kernel, 1);
   report->comparisonSeconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
+
+void measureErrors(ShadowStream& stream) {
+  NativeStream* const reference = stream.reference();
+  if (reference == nullptr) return;
+  const OutputErrors errors = errorsIn(stream, detail::wholeRegion(&stream), *reference);
+  double measured = std::max(errors.relativeTotal(), errors.relativeIntegers());
+  if (errors.lost > 0) measured = std::max(measured, 1.0);
+  stream.errors.measure(measured);
+  stream.errors.hasNan = errors.nans.count > 0;
+  stream.errors.hasInfinity = errors.infinities.count > 0;
+}
 
 void recordRead(ShadowStream& stream, const StreamRegion& region) {
   stream.noteRead(region);
@@ -124,30 +139,19 @@ void recordLifetime(ShadowStream& stream) {
   }
 }
 
-void recordOrder(ShadowStream& stream, const StreamRegion& keys) {
-  const auto& held = static_cast<const NativeStream&>(*keys.stream);
-  if (!isAllInOrder(keys)) return;
-  std::int64_t count = 0, first = -1;
-  for (std::int64_t i = 1; i < keys.shape.size(); ++i) {
-    if (!(shadow::valueAt(held, 0, i - 1) > shadow::valueAt(held, 0, i))) continue;
-    if (count++ == 0) first = i;
-  }
-  deviceOf(stream).setSortedKeys(nullptr);
-  if (count == 0) return;
-  const std::string name = stream.describe();
+void recordCount(ShadowStream& stream, const std::string& name, std::int64_t device, std::int64_t reference) {
   Recorder::Access report(deviceOf(stream).recorder());
-  const int kernel = Recorder::kernel(*report, "sk::sort");
-  report->kernels[static_cast<std::size_t>(kernel)].decisions += count;
-  const bool isKnown =
-      std::ranges::any_of(report->decisions, [&](const auto& each) { return each.kernel == kernel; });
-  if (isKnown) return;
-  shadow::ElementRecord element;
-  element.call = report->calls;
-  element.output = name;
-  element.index = {first};
-  element.device = shadow::valueAt(held, 0, first - 1);
-  element.reference = shadow::valueAt(held, 0, first);
-  report->decisions.push_back({kernel, count, true, element});
+  shadow::ResultRecord& result = report->results[Recorder::result(*report, name, true)];
+  ++result.reads;
+  result.elements = 1;
+  const auto difference = static_cast<double>(std::abs(device - reference));
+  result.last = std::min(1.0, difference / static_cast<double>(std::max<std::int64_t>(1, reference)));
+  const bool isWorst = result.last >= result.largest;
+  result.largest = std::max(result.largest, result.last);
+  result.differs += device == reference ? 0 : 1;
+  if (!isWorst) return;
+  result.shares = stream.errors.shares;
+  if (result.last > 0 && result.shares.all().empty()) result.shares.add(stream.last.kernel, 1);
 }
 
 }  // namespace sk

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// What a shadow records about streams outside of calls: what the host reads, what nothing reads, and sorted keys.
+// What a shadow records about streams outside of calls: what the host reads, and what nothing reads.
 #pragma once
+
+#include <cstdint>
+#include <string>
 
 #include "sk/stream.hpp"
 
@@ -12,10 +15,13 @@ class ShadowStream;
 /// The host has read the elements of a region: compares them with the reference's.
 void recordRead(ShadowStream& stream, const StreamRegion& region);
 
+/// Measures errors that are only estimated (StreamErrors::isEstimated).
+void measureErrors(ShadowStream& stream);
+
 /// The elements have been overwritten, or their stream ends: counts those that nothing has read.
 void recordLifetime(ShadowStream& stream);
 
-/// Keys have been brought into the order that the device's have: looks whether the reference's are in order then.
-void recordOrder(ShadowStream& stream, const StreamRegion& keys);
+/// The host has learnt how many elements a kernel or an algorithm has chosen.
+void recordCount(ShadowStream& stream, const std::string& name, std::int64_t device, std::int64_t reference);
 
 }  // namespace sk

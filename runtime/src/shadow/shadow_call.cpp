@@ -16,6 +16,7 @@
 #include "shadow/errors.hpp"
 #include "shadow/given.hpp"
 #include "shadow/recorder.hpp"
+#include "shadow/results.hpp"
 
 namespace sk {
 
@@ -141,7 +142,10 @@ void CallFollower::run() {
     hasOwn_ = hasOwn_ || isRunOnce_;
     if (!ownProblem_.empty()) device_.recorder().note(ownProblem_);
     compareAll();
+  } else {
+    estimateAll();
   }
+  recordOrigins();
   recordTimes(device_.recorder(), kernel_, {seconds_, referenceSeconds_, comparisonSeconds_});
   for (const Written& written : written_) {
     if (written.stream == nullptr) continue;
@@ -149,9 +153,23 @@ void CallFollower::run() {
     last = {.kernel = kernel_,
             .output = std::string(parameterOf(written).name),
             .seconds = seconds_ / static_cast<double>(written_.size()),
-            .elements = regionOf(written).shape.size()};
+            .elements = regionOf(written).shape.size(),
+            .pushed = written.pushed};
   }
   device_.recorder().writeSometimes();
+}
+
+/// Notes whose outputs the call has read: errors grow where that leads back to its own.
+void CallFollower::recordOrigins() {
+  Recorder::Access report(device_.recorder());
+  std::vector<int>& readFrom = report->kernels[static_cast<std::size_t>(kernel_)].readFrom;
+  addNew(readFrom, origins_);
+  for (const Written& written : written_) {
+    if (written.stream == nullptr) continue;
+    const bool isAll = !written.isPart && isWhole(regionOf(written));
+    if (isAll) written.stream->origins.clear();
+    addNew(written.stream->origins, {kernel_});
+  }
 }
 
 /// Finds out what is read and written. Returns false if the reference lacks a stream.
@@ -165,6 +183,7 @@ bool CallFollower::prepare() {
     isComplete = stream->reference() != nullptr && isComplete;
     stream->noteRead(argument.region);
     read_.push_back({.argument = i, .stream = stream, .errors = stream->errors});
+    addNew(origins_, stream->origins);
   }
   for (std::size_t i = 0; i < call_.arguments.size() && i < call_.kernel.parameters.size(); ++i) {
     const Argument& argument = call_.arguments[i];
@@ -177,6 +196,7 @@ bool CallFollower::prepare() {
     const Role role = call_.kernel.parameters[i].role;
     const bool isPart = role == Role::Scatter || (role == Role::Output && !call_.options.box.isWhole());
     stream->settle();
+    if (isPart) addNew(origins_, stream->origins);
     const bool isAll = role == Role::VariableOutput || (!isPart && isWhole(argument.region));
     isComplete = (isAll ? stream->room() : stream->reference()) != nullptr && isComplete;
     written_.push_back({.argument = i, .stream = stream, .isPart = isPart});
@@ -196,6 +216,8 @@ void CallFollower::prepareOwn() {
   const Stopwatch watch(comparisonSeconds_);
   isRunOnce_ = &ownReference_ == &device_.reference();
   for (Read& read : read_) {
+    if (read.stream->errors.isEstimated) measureErrors(*read.stream);
+    read.errors = read.stream->errors;
     prepareRead(read);
     isRunOnce_ = isRunOnce_ && read.stream->isSame();
   }
@@ -271,8 +293,11 @@ bool CallFollower::runOnReference() {
     device_.giveUp(call_.kernel, error.what());
     return false;
   }
-  for (const Written& written : written_) {
-    if (written.stream != nullptr) written.stream->becomeFresh();
+  for (Written& written : written_) {
+    if (written.stream == nullptr) continue;
+    written.stream->becomeFresh();
+    if (parameterOf(written).role == Role::VariableOutput)
+      written.pushed = written.stream->held()->shape.size();
   }
   return true;
 }

@@ -54,6 +54,7 @@ class CallFollower {
                                   device = {};  ///< temporaries; `total` of values alone
     std::unique_ptr<NativeStream> before =
         {};  ///< the stream's copy of the device's old elements; may be null
+    std::optional<std::int64_t> pushed = {};  ///< how many elements the reference has pushed
   };
   struct Read {
     std::size_t argument;
@@ -81,11 +82,26 @@ class CallFollower {
   void keepElements();
   void keepInputs();
   void compareOutput(Written& written);
+  void estimateAll();
+  /// Puts a value that the call has returned into `written.device`.
+  void takeValue(Written& written);
+  /// Whether the device has pushed another number of elements, which is a decision then. The reference takes the device's over.
+  bool recordPushed(Written& written, bool hasOwn);
+  void recordOrigins();
   /// What the reference computes with the device's inputs; null if that is not known, or if the device's results have replaced it.
   const NativeStream* ownOf(const Written& written) const;
+  struct Stored {
+    double squares;  ///< the sum of those of what rounding changes
+    std::string where;  ///< "'v' in halves"
+    std::string better;  ///< what would hold all digits: "floats"
+  };
+  std::optional<Stored> storedOf(const Written& written, const NativeStream& own) const;
+  void recordStored(const shadow::OutputErrors& errors, const std::optional<Stored>& stored);
   void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
   shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component,
                                   double own) const;
+  void addInputs(const Written& written, std::int64_t element, shadow::ElementRecord& record) const;
+  std::string sourceText(const Written& written) const;
   void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel,
                         shadow::Report& report);
   void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel,
@@ -93,12 +109,18 @@ class CallFollower {
   bool areRead(shadow::ExceptionRecord::Kind kind) const;
   bool turns(const Written& written) const;
   std::vector<double> weightsOf(const Written& written) const;
+  void recordCompensation(const shadow::OutputErrors& errors, shadow::Report& report) const;
+  void recordValue(const Written& written, const shadow::OutputErrors& errors, const StreamErrors& after,
+                   shadow::Report& report) const;
+  StreamErrors estimatedErrors(const Written& written) const;
+  void addRest(const Written& written, StreamErrors& after) const;
   StreamErrors errorsAfter(const Written& written, const shadow::OutputErrors& errors, int kernel) const;
   void loseOutputs(bool isCounted);
   void giveBack();
   StreamRegion regionOf(const Written& written) const;
-  const program::Parameter& parameterOf(const Written& written) const {
-    return call_.kernel.parameters[written.argument];
+  template <class ReadOrWritten>
+  const program::Parameter& parameterOf(const ReadOrWritten& each) const {
+    return call_.kernel.parameters[each.argument];
   }
 
   ShadowDevice& device_;
@@ -116,6 +138,7 @@ class CallFollower {
       -1;  ///< number of the record of what the output that was recorded last has of NaN or infinity
   double amplification_ = 0;
   double seconds_ = 0, referenceSeconds_ = 0, comparisonSeconds_ = 0;
+  std::vector<int> origins_;  ///< kernels whose outputs the call reads
   std::vector<Read> read_;
   std::vector<Written> written_;
 };

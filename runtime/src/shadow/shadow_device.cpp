@@ -111,7 +111,7 @@ ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorde
   if (std::exchange(primary_->results, nullptr) != nullptr)
     recorder_.note(
         "SK_RESULTS records nothing beside a shadow, whose own reads it would count; unset one of them");
-  recorder_.deviceBegins();
+  recorder_.deviceBegins(primary_->name());
 }
 
 ShadowDevice::~ShadowDevice() {
@@ -244,49 +244,20 @@ std::unique_ptr<Staging> ShadowDevice::makeStaging(Staging::Way way) {
   return std::make_unique<ShadowStaging>(*this, way);
 }
 
-// The device may reorder its elements itself, and says then where each came from; the reference's follow.
-std::optional<std::int64_t> ShadowDevice::reorder(const Reordering& order) {
-  ShadowStream& keys = shadowStream(order.keys);
-  const bool isSort = order.by == Reordering::By::Keys;
-  if (isSort) sortedKeys_ = &keys;
-  std::vector<StreamRegion> moved;
-  for (const StreamRegion& region : order.moved) moved.push_back(shadowStream(region).innerOf(region));
-  const Shape& shape = order.keys.shape;
-  std::unique_ptr<StreamState> own;
-  StreamRegion places;
-  if (order.places != nullptr) {
-    places = shadowStream(*order.places).innerOf(*order.places);
-  } else {
-    own = primary_->createStream(ElementTraits<std::int32_t>::element(), shape, Storage::Single);
-    places = detail::wholeRegion(own.get());
-  }
-  Reordering inner{.by = order.by, .keys = keys.innerOf(order.keys), .moved = moved, .places = &places};
-  const std::optional<std::int64_t> first = primary_->reorder(inner);
-  if (!first) return std::nullopt;
-  std::vector<std::int32_t> sources(static_cast<std::size_t>(shape.size()));
-  detail::read(places, sources.data(), sources.size());
-  for (const StreamRegion& region : order.moved) {
-    ShadowStream& stream = shadowStream(region);
-    stream.mirrorMarks();
-    if (NativeStream* const held = stream.isStale() ? nullptr : stream.reference()) {
-      StreamRegion there = region;
-      there.stream = held;
-      held->permute(there, sources);
-      if (isSort && &stream == &keys) recordOrder(stream, there);
-    }
-  }
-  if (order.places != nullptr) shadowStream(*order.places).goStale(false);
-  return first;
-}
-
 std::unique_ptr<DeviceState> withShadow(std::unique_ptr<DeviceState> device) {
   const char* const option = std::getenv("SK_SHADOW");
-  if (option == nullptr || *option == '\0' || device->isReference()) return device;
-  shadow::Recorder* const recorder = shadow::Recorder::ofProcess(option, device->name());
+  if (option == nullptr || *option == '\0') return device;
+  shadow::Recorder* const recorder = shadow::Recorder::ofProcess(option);
   if (recorder == nullptr || !recorder->isInOwnProcess()) return device;
+  if (device->isReference()) {
+    recorder->deviceStaysAlone(device->name(),
+                               "the reference device has no shadow: it computes what others are compared "
+                               "with; choose another device");
+    return device;
+  }
   if (checksWritten()) {
-    recorder->note("nothing is followed: SK_CHECK=written runs calls several times; unset it");
-    recorder->write(true);
+    recorder->deviceStaysAlone(device->name(),
+                               "nothing is followed: SK_CHECK=written runs calls several times; unset it");
     return device;
   }
   return std::make_unique<ShadowDevice>(std::move(device), *recorder);

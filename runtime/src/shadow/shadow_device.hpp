@@ -83,9 +83,6 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   bool isGivenUp(const program::Kernel& kernel) const { return givenUp_.contains(&kernel); }
   void giveUp(const program::Kernel& kernel, const std::string& why);
   shadow::Influences& influences() { return influences_; }
-  /// The order of these keys decides where elements go (permute()).
-  void setSortedKeys(ShadowStream* keys) { sortedKeys_ = keys; }
-  ShadowStream* sortedKeys() const { return sortedKeys_; }
 
   // the calls of the program
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -152,7 +149,6 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::int64_t memory_ = 0,
                memoryLimit_ = 0;  ///< bytes of the reference's streams, and the most for these and copies
   std::int64_t kept_ = 0;  ///< bytes of the copies that streams keep
-  ShadowStream* sortedKeys_ = nullptr;
 };
 
 /// Puts a shadow around a device if SK_SHADOW asks for one and the device can have one; else returns the device itself.

@@ -4,6 +4,7 @@
 // something reads it.
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "device/scalar_pass.hpp"
 #include "shadow/shadow_call.hpp"
@@ -26,9 +27,11 @@ class ShadowedScalars final : public RecordedCall {
     bool isFollowed = device_.isFollowing();
     ScalarPass pass = pass_;
     StreamErrors errors;
+    std::vector<int> origins;
     for (StreamRegion& read : pass.reads) {
       ShadowStream& stream = shadowStream(read);
       stream.noteRead(read);
+      addNew(origins, stream.origins);
       if (stream.errors.relative >= errors.relative) errors = stream.errors;
       read.stream = stream.reference();
       isFollowed = isFollowed && read.stream != nullptr;
@@ -44,6 +47,7 @@ class ShadowedScalars final : public RecordedCall {
     for (const ScalarPass::Output& output : pass_.outputs) {
       auto& stream = *static_cast<ShadowStream*>(output.stream);
       stream.mirrorMarks();
+      stream.origins = origins;
       if (!isFollowed) {
         stream.goStale(false);
         continue;

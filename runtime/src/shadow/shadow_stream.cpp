@@ -50,7 +50,6 @@ ShadowStream::~ShadowStream() {
   endWrite();
   dropConverted();
   owner().freeMemory(bytes_);
-  if (owner().sortedKeys() == this) owner().setSortedKeys(nullptr);
 }
 
 ShadowDevice& ShadowStream::owner() const { return static_cast<ShadowDevice&>(*device); }
@@ -191,6 +190,7 @@ void ShadowStream::change(const StreamRegion& region, Change&& change) {
   mirrorMarks();
   refreshExposure();
   last = {.elements = region.shape.size(), .isByHost = true};
+  if (isAll) origins.clear();
   if (held == nullptr) return;
   change(on(region, *held));
   isStale_ = false;
@@ -257,6 +257,8 @@ bool ShadowStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
           .output = source.last.output,
           .elements = to.shape.size(),
           .isByHost = source.last.isByHost};
+  if (isAll) origins.clear();
+  addNew(origins, source.origins);
   if (written == nullptr) {
     goStale(false);
     return true;
@@ -288,26 +290,14 @@ void ShadowStream::exchangeElements(StreamState& other) noexcept {
   std::swap(exposed_, with.exposed_);
   std::swap(errors, with.errors);
   std::swap(last, with.last);
+  std::swap(origins, with.origins);
   exchangeMarks(other);
 }
 
-void ShadowStream::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
-  NativeStream* const held = reference();
-  endWrite();
-  try {
-    const DenseRegion dense(innerOf(region), /*isRead=*/true);
-    dense.get().stream->permute(dense.get(), sources);
-    dense.finish();
-  } catch (...) {
-    mirrorMarks();
-    goStale(false);
-    throw;
-  }
-  mirrorMarks();
-  last = {.elements = region.shape.size()};
-  if (held == nullptr) return;
-  held->permute(on(region, *held), sources);
-  if (owner().sortedKeys() == this) recordOrder(*this, on(region, *held));
+void ShadowStream::noteCountRead() {
+  if (!last.pushed || !owner().isFollowing() || owner().internalWork > 0) return;
+  recordCount(*this, fmt::format("{} (number of elements)", describe()), shape.size(),
+              *std::exchange(last.pushed, std::nullopt));
 }
 
 // The application may draw to the texture. What it has drawn is found when the elements are needed next.

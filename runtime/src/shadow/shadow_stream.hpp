@@ -3,10 +3,12 @@
 // A stream of a shadowed device: the elements of the device that runs the program, and the same on the reference device.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "device/stream_state.hpp"
 #include "native/native_stream.hpp"
@@ -22,7 +24,19 @@ struct StreamErrors {
   shadow::Shares shares;  ///< whose error it is
   bool hasNan = false, hasInfinity = false;  ///< on the device
   int exception = -1;  ///< number of the record of the NaN or infinity that they come from
+  bool isEstimated = false;  ///< calls that were not compared have written some: `relative` is expected
+  int unseen = shadow::notCompared;  ///< the kernel of these calls, if it is one
+
+  /// Estimated errors have been measured: what the estimate does not explain is of calls that were not compared.
+  void measure(double measured);
 };
+
+/// Adds what the list lacks.
+inline void addNew(std::vector<int>& list, const std::vector<int>& others) {
+  for (const int each : others) {
+    if (std::ranges::find(list, each) == list.end()) list.push_back(each);
+  }
+}
 
 /// Who wrote the elements last, and how many of them have been read since.
 struct LastWrite {
@@ -34,6 +48,8 @@ struct LastWrite {
   int given = -1;  ///< number of the record of what the host has given (shadow/given.hpp)
   bool isRead = false, isReadWhole = false;
   Index readBegin = {}, readEnd = {};  ///< a box around what was read
+  std::optional<std::int64_t> pushed =
+      {};  ///< how many elements the reference has pushed, until the host asks
 };
 
 class ShadowStream final : public StreamState {
@@ -78,6 +94,7 @@ class ShadowStream final : public StreamState {
     goStale(false);
   }
   void settle() override;
+  void noteCountRead() override;
   void write(const StreamRegion& region, const std::byte* elements) override;
   void writeAsync(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
@@ -87,7 +104,6 @@ class ShadowStream final : public StreamState {
   void fill(const StreamRegion& region, const std::byte* value) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
   void exchangeElements(StreamState& other) noexcept override;
-  void permute(const StreamRegion& region, std::span<const std::int32_t> sources) override;
   StreamTexture texture(int plane) override;
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;
@@ -108,6 +124,7 @@ class ShadowStream final : public StreamState {
 
   StreamErrors errors;
   LastWrite last;
+  std::vector<int> origins;  ///< kernels that the elements come from, without inputs of these
   std::int64_t resyncs = 0;
 
  private:

@@ -10,8 +10,9 @@
 
 namespace sk::shadow {
 
-/// The number of a kernel in the report; values that the application wrote have a number of their own.
-inline constexpr int writtenByHost = -1;
+/// The number of a kernel in the report; values that the application wrote have a number of their own, and so has what calls added
+/// that were not compared.
+inline constexpr int writtenByHost = -1, notCompared = -2;
 
 struct Share {
   int kernel;

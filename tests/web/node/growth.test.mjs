@@ -10,7 +10,7 @@ const load = (name) => import(`${process.env.SK_WEB}/streamkernel/shadow/${name}
 const [{ Records }, { verdictsOf }] = await Promise.all(['records', 'verdicts'].map(load));
 const { cases } = JSON.parse(readFileSync(`${process.env.SK_SOURCE}/tests/shadow/growth.json`));
 
-function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady = 0, result, exceptions }) {
+function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady = 0, watched = false, result, exceptions }) {
   const all = new Records();
   all.calls = calls * stride;
   all.followed = calls;
@@ -22,6 +22,16 @@ function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady =
     const errors = { call: n * stride, own: 0, inherited: 0 };
     step.output('v', 'float').points.add({ ...errors, total: after(relative, n), absolute: after(absolute, n), isTurned: n <= turned });
     for (let i = 0; i < steady; ++i) step.output(`w${i}`, 'float').points.add({ ...errors, total: 1e-7, absolute: 1e-7, isTurned: false });
+  }
+  if (watched) {
+    step.readFrom.add(0);
+    const look = all.kernels[all.kernel('look')];
+    look.calls = calls;
+    look.readFrom.add(0);
+    for (const point of step.output('v', 'float').points.points) {
+      look.amplification.add(1);
+      look.output('w', 'float').points.add({ ...point, absolute: point.absolute ** 2 });
+    }
   }
   const read = all.result('v', false);
   read.largest = read.last = result === 'inf' ? Infinity : result;

@@ -318,6 +318,46 @@ async function choices(device) {
   first.stop();
 }
 
+/** Calls that are not compared: what they add is not what others do. */
+async function unseen(device) {
+  const [tame, wild] = [filled(device, [64], (i) => 0.25 + i / 640), filled(device, [64], (i) => 1e6 + i)];
+  const [r, s] = [1, 2].map(() => device.stream('float', [64]));
+  const run = async () => {
+    k.field.cancel(tame, r);
+    k.field.cancel(wild, r);
+    k.step(0.25, r, s);
+    await s.read();
+  };
+  const second = await followed('unseen', device, run, { every: 2 });
+  expect('a call that is not compared is named', second.found.verdicts[0].kernel === 'field::cancel' && second.found.results[0].shares.find(({ kernel }) => kernel === 'field::cancel').share > 0.99, JSON.stringify([second.found.verdicts, second.found.results]));
+  const amplification = second.kernel('step').amplification.largest;
+  expect('what is made of its error is measured', amplification > 0.2 && amplification < 2, String(amplification));
+  const none = await followed('unseen by several', device, async () => {
+    k.field.damp(1 / 3, wild, r);
+    await run();
+    k.field.damp(1 / 3, s, r);
+    await r.read();
+  }, { kernels: ['total'] });
+  const [, last] = none.found.results;
+  expect('so are several', last.shares[0].kernel === '(calls that were not compared)' && none.found.verdicts[0].text.startsWith('calls that were not compared'), JSON.stringify([last, none.found.verdicts]));
+}
+
+/** A kernel that looks at an unstable step. */
+async function watched(device) {
+  const x = filled(device, [100], (i) => (i % 7 === 3 ? 2 : 0.5));
+  const [y, looked] = [1, 2].map(() => device.stream('float', [100]));
+  const { found } = await followed('watched', device, async () => {
+    for (let i = 0; i < 20; ++i) {
+      k.step(0.9, x, y);
+      k.step(0.9, y, x);
+      k.energy(1, x, looked);
+      k.field.damp(2, looked, looked);
+    }
+    await x.read();
+  });
+  expect('an unstable step is named, not what looks at it', found.verdicts.some(({ kind, kernel }) => kind === 'unstable' && kernel === 'step'), JSON.stringify(found.verdicts));
+}
+
 async function ends() {
   const device = await Device.create();
   const shadow = await device.shadow();
@@ -332,7 +372,7 @@ const unhandled = [];
 addEventListener('unhandledrejection', ({ reason }) => unhandled.push(String(reason)));
 try {
   const device = await Device.create();
-  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, overshoots, grows, vanishes, named, choices, ends]) {
+  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, overshoots, grows, vanishes, named, choices, unseen, watched, ends]) {
     try {
       await run(device);
       const error = device.context.getError();

@@ -55,7 +55,8 @@ function life(event) {
         {},
         make("h4", {}, "Born from"),
         inputsTable(event.inputs) ??
-          make("p", { class: "note" }, `The first ${names[event.kind] ?? event.kind} of this element has no inputs.`),
+          (!event.source && make("p", { class: "note" }, `The first ${names[event.kind] ?? event.kind} of this element has no inputs.`)),
+        sourceNote(event),
       ),
       make("div", {}, make("h4", {}, "Where it went"), pathList(event.path)),
     ),

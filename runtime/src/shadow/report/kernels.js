@@ -64,6 +64,7 @@ function worstElement({ worst }) {
       ".",
     ),
     inputsTable(worst.inputs),
+    sourceNote(worst),
   ];
 }
 
@@ -125,7 +126,8 @@ function kernelsSection() {
       title: "How much of the error of all results its own errors cause",
       isNumber: true,
       key: sorted(({ share }) => share),
-      of: ({ share }) => metered(toNumber(share), "share", percentText(share)),
+      of: ({ share, compensates }) =>
+        metered(toNumber(share), "share", compensates && !(toNumber(share) > 0) ? `<0${narrowSpace}%` : percentText(share)),
     },
     {
       name: "digits",

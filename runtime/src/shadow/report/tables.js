@@ -215,11 +215,11 @@ function inputsTable(inputs) {
       make(
         "tbody",
         {},
-        inputs.map(({ parameter, value, hex, reference }) =>
+        inputs.map(({ parameter, at = [], value, hex, reference }) =>
           make(
             "tr",
             {},
-            make("th", { scope: "row", class: "code" }, parameter),
+            make("th", { scope: "row", class: "code" }, elementText(parameter, at)),
             make("td", {}, valueOf({ value, hex })),
             make("td", {}, valueOf(reference)),
           ),
@@ -227,4 +227,9 @@ function inputsTable(inputs) {
       ),
     ),
   );
+}
+
+/** What an element was computed from, if that is more or less than its inputs say. */
+function sourceNote({ source }) {
+  return source ? make("p", { class: "note" }, `${source[0].toUpperCase()}${source.slice(1)}.`) : null;
 }

@@ -101,12 +101,28 @@ std::string sharesText(const Entry& shares) {
              : text;
 }
 
+/// Errors that make those of others smaller have no share above 0, and yet they count.
+std::string shareOfKernel(const Entry& kernel) {
+  const bool compensates = kernel.has("compensates") && kernel["compensates"].flag();
+  return compensates && !(kernel["share"].number() > 0) ? "<0 %" : shareText(kernel["share"]);
+}
+
 TextTable inputsTable(const Entry& inputs) {
   TextTable table({"  input", "<device", "<reference"});
   forEach(inputs, [&](const Entry& input) {
-    table.add({"  " + input["parameter"].text(), sampleText(input), sampleText(input["reference"])});
+    std::string name = "  " + input["parameter"].text();
+    if (input.has("at"))
+      forEach(input["at"], [&](const Entry& index) { name += fmt::format("[{}]", index.integer()); });
+    table.add({name, sampleText(input), sampleText(input["reference"])});
   });
   return table;
+}
+
+/// What an element was computed from.
+std::string sourcesText(const Entry& element) {
+  const Entry inputs = element["inputs"];
+  return (inputs.size() > 0 ? inputsTable(inputs).text(inputs.size()) : "") +
+         (element.has("source") ? fmt::format("    {}\n", element["source"].text()) : "");
 }
 
 /// A part of the report: a title, and lines.
@@ -153,7 +169,7 @@ std::string kernelsOf(const Entry& report, std::size_t most) {
                    "exceptions", "decisions"});
   for (const Entry& kernel : byNumber(report["kernels"], [](const Entry& one) { return one["share"]; })) {
     const Entry amplification = kernel["amplification"];
-    table.add({kernel["name"].text(), shareText(kernel["share"]), digitsText(kernel["digits"]),
+    table.add({kernel["name"].text(), shareOfKernel(kernel), digitsText(kernel["digits"]),
                errorText(kernel["own"]["largest"]), errorText(kernel["inherited"]["largest"]),
                amplification.isNull() ? "-" : errorText(amplification["largest"]),
                std::to_string(kernel["calls"].integer()), secondsText(kernel["seconds"].number()),
@@ -169,7 +185,7 @@ std::string exceptionText(const Entry& event) {
       "  {} in call {}: {} of {} is {}, not {}{}\n", event["kind"].text(), event["call"].integer(),
       elementText(event), event["kernel"].text(), sampleText(event["device"]), sampleText(event["reference"]),
       elements > 1 ? fmt::format(", like {} of this call", counted(elements - 1, "other element")) : "");
-  if (event["inputs"].size() > 0) text += inputsTable(event["inputs"]).text(event["inputs"].size());
+  text += sourcesText(event);
   constexpr std::size_t few = 8;
   const Entry path = event["path"];
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -320,7 +336,7 @@ std::string worstOf(const Entry& worst) {
   if (worst.isNull()) return "  no element differs from the reference\n";
   return fmt::format("  {} of call {} is {}, not {}\n", elementText(worst), worst["call"].integer(),
                      sampleText(worst["device"]), sampleText(worst["reference"])) +
-         (worst["inputs"].size() > 0 ? inputsTable(worst["inputs"]).text(worst["inputs"].size()) : "");
+         sourcesText(worst);
 }
 
 std::string kernelOf(const Entry& report, const Entry& kernel, std::size_t most) {
@@ -328,7 +344,7 @@ std::string kernelOf(const Entry& report, const Entry& kernel, std::size_t most)
   std::string text =
       fmt::format("{}: {}, {}\n", name, followedText(kernel), secondsText(kernel["seconds"].number()));
   fmt::format_to(std::back_inserter(text), "  share           {} of the results' errors\n",
-                 shareText(kernel["share"]));
+                 shareOfKernel(kernel));
   fmt::format_to(std::back_inserter(text), "  digits          {}\n", digitsText(kernel["digits"]));
   fmt::format_to(std::back_inserter(text), "  exceptions      {}\n  decisions       {}\n",
                  exceptionsText(kernel), kernel["decisions"].integer());

@@ -7,7 +7,7 @@ import { Stream, View, viewOf } from '../stream.js';
 import type { AnyStream, Elements } from './columns.js';
 import type { StreamRecord } from './records.js';
 import { Series } from './series.js';
-import { Shares, writtenByHost } from './shares.js';
+import { notCompared, Shares, writtenByHost } from './shares.js';
 import { widened } from './widen.js';
 
 /** What is known of the device's elements. */
@@ -20,10 +20,26 @@ export interface StreamErrors {
   readonly hasInfinity: boolean;
   /** The record of the NaN or infinity that they come from; -1 if there is none. */
   readonly exception: number;
+  /** Calls that were not compared have written some: `relative` is expected. */
+  readonly isEstimated: boolean;
+  /** The kernel of these calls, if it is one. */
+  readonly unseen: number;
 }
 
 export function noErrors(): StreamErrors {
-  return { relative: 0, shares: new Shares(), hasNan: false, hasInfinity: false, exception: -1 };
+  return { relative: 0, shares: new Shares(), hasNan: false, hasInfinity: false, exception: -1, isEstimated: false, unseen: notCompared };
+}
+
+/** Estimated errors that have been measured: what the estimate does not explain is of calls that were not compared. */
+export function measured(errors: StreamErrors, relative: number): StreamErrors {
+  if (!errors.isEstimated) return errors;
+  const slack = 2; // errors of one kernel differ as much from call to call
+  const part = relative > slack * errors.relative ? (slack * errors.relative) / relative : 1;
+  const shares = new Shares();
+  shares.addAll(errors.shares, part);
+  shares.add(errors.unseen, 1 - part);
+  shares.normalize();
+  return { ...errors, shares, relative, isEstimated: false };
 }
 
 export class Counterpart {
@@ -33,6 +49,8 @@ export class Counterpart {
   sample: Promise<Float64Array> | null = null;
   /** The kernel that has written the device's elements last. */
   writer = writtenByHost;
+  /** A call that was not compared has written them. */
+  isEstimated = false;
   readonly record: StreamRecord;
   private held: AnyStream | null = null;
   private isFresh = false;
@@ -74,6 +92,7 @@ export class Counterpart {
   change(writer: number): void {
     this.writer = writer;
     this.sample = null;
+    this.isEstimated = false;
   }
 
   /** The device's elements are others now, which the reference has not. */

@@ -106,6 +106,11 @@ export class OutputErrors {
     return this.newNans.count > 0 || this.newInfinities.count > 0;
   }
 
+  /** Of real numbers and of integers. */
+  relativeAll(): number {
+    return Math.max(this.relativeTotal(), this.relativeIntegers());
+  }
+
   private relative(squares: number): number {
     if (squares === 0) return 0;
     if (!(this.reference2 > 0)) return 1; // nothing of the result is right

@@ -122,7 +122,7 @@ export class FollowedCall {
       const own = this.isMeasured ? this.runOwn() : [];
       records.referenceSeconds += (performance.now() - start) / 1000;
       if (this.isMeasured) this.compare(result, own, outputs);
-      else this.end();
+      else this.estimate();
     } catch (error) {
       this.giveUp(error, result);
       this.loseOutputs();
@@ -169,7 +169,9 @@ export class FollowedCall {
       if ((isValue || this.isMeasured) && !kept.has(stream)) kept.set(stream, this.temporary(widened(stream, element)));
       const mayTurn = this.isMeasured && counterpart !== null && this.outputs.some((output) => output.of !== null && isAlike(of, output.of));
       const sample = mayTurn ? sampleNow(of, counterpart) : null;
-      this.reads.push({ index, isValue, name, of, counterpart, device: kept.get(stream) ?? null, sample });
+      if (counterpart !== null && counterpart.writer >= 0) this.follower.records.kernels[this.kernel]!.readFrom.add(counterpart.writer);
+      if (counterpart !== null && this.isMeasured) this.follower.measureLater(counterpart);
+      this.reads.push({ index, isValue, name, isGather: role === 'gather', of, counterpart, device: kept.get(stream) ?? null, sample });
     });
     for (const { index, of } of this.outputs) {
       if (of !== null && of.size < viewOf(of).stream.size) this.follower.counterpartOf(viewOf(of).stream).taken(this.elementOf(index));
@@ -245,6 +247,14 @@ export class FollowedCall {
     for (const { arrays } of written) arrays.catch(() => undefined); // which the comparison sees
     const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, this.valuesGiven(), values.length);
     this.follower.compareLater(bytes, () => recorder.record(written), () => this.end());
+  }
+
+  /** The call is not compared. What its outputs have is expected, in its turn among the comparisons. */
+  private estimate(): void {
+    const written = this.outputs.flatMap(({ index, of }) => (of === null ? [] : [{ name: this.parameters[index]!.name, of, counterpart: this.follower.counterpartOf(viewOf(of).stream) }]));
+    for (const { counterpart } of written) counterpart.isEstimated = true;
+    const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, [], 0);
+    this.follower.compareLater(0, () => recorder.estimate(written), () => this.end());
   }
 
   /** The components of each value that a reduce promises. */

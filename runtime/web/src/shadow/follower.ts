@@ -11,7 +11,7 @@ import type { GivenDomain } from '../over.js';
 import { viewOf } from '../stream.js';
 import type { KernelOptions, ScanOptions } from '../types.js';
 import { bytesOf, isReal, readColumns, scalarsOf, type AnyStream, type Elements } from './columns.js';
-import { Counterpart, noErrors, placedOn } from './counterpart.js';
+import { Counterpart, measured, noErrors, placedOn } from './counterpart.js';
 import { compare } from './errors.js';
 import { FollowedCall, formCaller, type FormCaller } from './followed_call.js';
 import { Records } from './records.js';
@@ -85,7 +85,7 @@ export class Follower implements Observer {
         result.notFinite = errors.newNans.count + errors.newInfinities.count;
         result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
         result.exception = counterpart.errors.exception;
-        result.shares = counterpart.errors.shares.copied();
+        result.shares = measured(counterpart.errors, errors.relativeAll()).shares.copied();
         if (result.last > 0 && result.shares.sum() === 0) result.shares.add(writer, 1); // a call that was not compared
       });
     });
@@ -148,6 +148,21 @@ export class Follower implements Observer {
   private leave(counterpart: Counterpart, isOfPage: boolean): void {
     counterpart.leave(isOfPage);
     this.compareLater(0, () => void (counterpart.errors = noErrors()));
+  }
+
+  /** Measures errors that are only estimated, of the elements as they are now. */
+  measureLater(counterpart: Counterpart): void {
+    const held = counterpart.elements();
+    if (!counterpart.isEstimated || held === null) return;
+    counterpart.isEstimated = false;
+    const { stream } = counterpart;
+    const arrays = Promise.all([readColumns(stream), readColumns(held)]);
+    arrays.catch(() => undefined); // which the comparison sees
+    this.compareLater(2 * bytesOf(stream), async () => {
+      const [device, reference] = await arrays;
+      const errors = compare(scalarsOf(stream.element).map(isReal), device, null, reference);
+      counterpart.errors = { ...measured(counterpart.errors, errors.relativeAll()), hasNan: errors.nans.count > 0, hasInfinity: errors.infinities.count > 0 };
+    });
   }
 
   callerOf(form: Callable, file: LoadedFile): FormCaller {

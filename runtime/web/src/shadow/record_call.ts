@@ -5,14 +5,15 @@
 import { isSameElement, numbersOf } from '../elements.js';
 import type { Element, Parameter } from '../generated.js';
 import { viewOf } from '../stream.js';
-import { componentNames, indexOf, inputNumber, isReal, readColumns, readElement, sampleOf, scalarsOf, type AnyStream, type Elements } from './columns.js';
+import { componentNames, indexIn, indexOf, inputNumber, isReal, readColumns, readElement, sampleOf, scalarsOf, type AnyStream, type Elements } from './columns.js';
 import { noErrors, type Counterpart, type StreamErrors } from './counterpart.js';
 import { compare, isJump, type Columns, type Found, type OutputErrors } from './errors.js';
 import type { ElementRecord, ExceptionRecord, Records, Value } from './records.js';
-import { Shares, writtenByHost } from './shares.js';
+import { notCompared, Shares, writtenByHost } from './shares.js';
 
 export interface ReadOfCall {
   readonly name: string;
+  readonly isGather: boolean;
   readonly of: Elements;
   /** Null if a stream holds a value, which the reference takes from the device. */
   readonly counterpart: Counterpart | null;
@@ -42,6 +43,28 @@ export function haveOtherSigns(a: Float64Array, b: Float64Array): boolean {
   return a.reduce((sum, x, i) => sum + x * b[i]!, 0) < 0;
 }
 
+/** The errors of a stream after some of its elements were written: the others have those that they had. */
+function withRest(written: StreamErrors, of: Elements | null, counterpart: Counterpart | null): StreamErrors {
+  const whole = of === null ? 1 : viewOf(of).stream.size;
+  if (of === null || counterpart === null || of.size >= whole) {
+    written.shares.normalize();
+    return written;
+  }
+  const before = counterpart.errors;
+  const part = of.size / whole;
+  const [here, there] = [written.relative ** 2 * part, before.relative ** 2 * (1 - part)];
+  const shares = new Shares();
+  shares.addAll(written.shares, here);
+  shares.addAll(before.shares, there);
+  shares.normalize();
+  const isOfBoth = written.isEstimated && before.isEstimated && written.unseen !== before.unseen;
+  const unseen = isOfBoth ? notCompared : written.isEstimated ? written.unseen : before.unseen;
+  return {
+    ...written, unseen, shares, relative: Math.sqrt(here + there), hasNan: written.hasNan || before.hasNan, hasInfinity: written.hasInfinity || before.hasInfinity,
+    isEstimated: written.isEstimated || before.isEstimated,
+  };
+}
+
 const mostRecords = 256;
 const longestPath = 32;
 
@@ -58,7 +81,7 @@ export class CallRecorder {
   ) {}
 
   async record(written: readonly WrittenByCall[]): Promise<void> {
-    this.inputErrors = this.reads.map(({ counterpart }) => counterpart?.errors ?? noErrors());
+    this.takeInputErrors();
     const record = this.records.kernels[this.kernel]!;
     let amplification = 0;
     for (const each of written) {
@@ -72,6 +95,29 @@ export class CallRecorder {
     if (amplification > 0) record.amplification.add(amplification);
     ++record.followed;
     ++this.records.followed;
+  }
+
+  private takeInputErrors(): void {
+    this.inputErrors = this.reads.map(({ counterpart }) => counterpart?.errors ?? noErrors());
+  }
+
+  /**
+   * What a call that is not compared is taken to leave: what the last compared call of the kernel has added, and what its inputs have, as
+   * that call has magnified it. What exceeds it, when the elements are compared, is of calls that were not compared.
+   */
+  estimate(written: readonly { readonly name: string; readonly of: Elements; readonly counterpart: Counterpart }[]): void {
+    this.takeInputErrors();
+    const inputs = Math.max(0, ...this.inputErrors.map(({ relative }) => relative));
+    for (const { name, of, counterpart } of written) {
+      const known = this.records.kernels[this.kernel]!.compared.get(name) ?? { own: 0, amplification: 1 };
+      const relative = known.own + known.amplification * inputs;
+      const has = (what: 'hasNan' | 'hasInfinity') => this.inputErrors.some((errors) => errors[what]);
+      const isOfOthers = this.inputErrors.some((errors) => errors.isEstimated && errors.unseen !== this.kernel);
+      const exception = Math.max(-1, ...this.inputErrors.map((errors) => errors.exception));
+      const shares = relative > 0 ? this.sharesOf(known.own / relative) : new Shares();
+      const after = { relative, shares, hasNan: has('hasNan'), hasInfinity: has('hasInfinity'), exception, isEstimated: true, unseen: isOfOthers ? notCompared : this.kernel };
+      counterpart.errors = withRest(after, of, counterpart);
+    }
   }
 
   private amplificationOf(errors: OutputErrors): number {
@@ -90,6 +136,7 @@ export class CallRecorder {
       record.own.add(errors.reportedOwn());
       record.inherited.add(inherited);
       record.total.add(errors.reportedTotal());
+      record.compared.set(name, { own, amplification: this.amplificationOf(errors) || 1 });
       output.points.add({ call: number, own, inherited, total: after.relative, absolute: errors.absoluteTotal(), isTurned });
       const worst = errors.own.error / (errors.scale() || 1);
       if (errors.own.element >= 0 && worst > record.worstError) {
@@ -142,23 +189,9 @@ export class CallRecorder {
       relative = errors.relativeIntegers();
       own = Math.min(1, errors.ownDecisions.count / errors.decisions.count);
     }
-    let shares = relative > 0 ? this.sharesOf(own) : new Shares();
-    let [hasNan, hasInfinity] = [errors.nans.count > 0, errors.infinities.count > 0];
-    const whole = written.of === null ? 1 : viewOf(written.of).stream.size;
-    if (written.of !== null && written.of.size < whole) { // other elements have the errors that they had
-      const before = written.counterpart!.errors;
-      const part = written.of.size / whole;
-      const [here, there] = [relative ** 2 * part, before.relative ** 2 * (1 - part)];
-      const both = new Shares();
-      both.addAll(shares, here);
-      both.addAll(before.shares, there);
-      shares = both;
-      relative = Math.sqrt(here + there);
-      hasNan ||= before.hasNan;
-      hasInfinity ||= before.hasInfinity;
-    }
-    shares.normalize();
-    return { relative, shares, hasNan, hasInfinity, exception: -1 };
+    const shares = relative > 0 ? this.sharesOf(own) : new Shares();
+    const after = { relative, shares, hasNan: errors.nans.count > 0, hasInfinity: errors.infinities.count > 0, exception: -1, isEstimated: false, unseen: notCompared };
+    return withRest(after, written.of, written.counterpart);
   }
 
   private sharesOf(own: number): Shares {
@@ -229,11 +262,17 @@ export class CallRecorder {
     if (element >= 0 && isJump(errors, arrays[1][component]![element]!)) await add(1, element, component, false);
   }
 
+  /** Which elements an output's element was computed from, if the roles of the parameters do not say. */
+  private sourceOf(of: Elements | null): { source?: string } {
+    if (of === null) return { source: `it was computed from several elements: of ${this.reads.map((read) => `${read.of.size} of ${read.name}`).join(' and ')}` };
+    return this.reads.some(({ isGather }) => isGather) ? { source: 'of a gather, the element at the same index is shown; the kernel may have read others' } : {};
+  }
+
   private async elementOf(written: WrittenByCall, number: number, component: number, [device, own]: readonly [Columns, Columns, Columns]): Promise<ElementRecord> {
     const { element, of, parameter } = written;
     const scalars = scalarsOf(element);
     const value = (columns: Columns): Value => ({ value: columns[component]![number]!, isReal: isReal(scalars[component]!) });
-    const inputs: (Value & { readonly parameter: string })[] = this.values.flatMap((given) => {
+    const inputs: ElementRecord['inputs'][number][] = this.values.flatMap((given) => {
       const names = componentNames(given.element);
       const areReal = scalarsOf(given.element).map(isReal);
       return numbersOf(given.element, given.value).map((x, c) => ({ parameter: given.name + names[c]!, value: areReal[c] ? Math.fround(Number(x)) : Number(x), isReal: areReal[c]! }));
@@ -244,9 +283,10 @@ export class CallRecorder {
       const page = viewOf(read.of).stream.element;
       const names = componentNames(page);
       const areReal = scalarsOf(page).map(isReal);
-      (await readElement(read.device!, at)).forEach((x, c) => inputs.push({ parameter: read.name + names[c]!, value: x, isReal: areReal[c]! }));
+      const index = read.isGather ? { at: indexIn(read.of.shape as readonly number[], at) } : {};
+      (await readElement(read.device!, at)).forEach((x, c) => inputs.push({ parameter: read.name + names[c]!, ...index, value: x, isReal: areReal[c]! }));
     }
     const index = of === null ? [] : indexOf(of, number);
-    return { call: this.number, output: parameter.name + componentNames(element)[component]!, index, device: value(device), reference: value(own), inputs };
+    return { call: this.number, output: parameter.name + componentNames(element)[component]!, index, device: value(device), reference: value(own), inputs, ...this.sourceOf(of) };
   }
 }

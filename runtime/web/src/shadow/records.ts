@@ -3,7 +3,7 @@
 // What a shadow has found out about a page, before it is a report: runtime/src/shadow/report.hpp. Errors are relative to the root mean
 // square of the reference's components, unless said otherwise.
 import { Series, Spread } from './series.js';
-import { Shares, writtenByHost } from './shares.js';
+import { notCompared, Shares, writtenByHost } from './shares.js';
 
 /** A number of the report. */
 export interface Value {
@@ -20,7 +20,9 @@ export interface ElementRecord {
   readonly device: Value;
   /** The reference computes with the device's inputs. */
   readonly reference: Value;
-  readonly inputs: readonly (Value & { readonly parameter: string })[];
+  readonly inputs: readonly (Value & { readonly parameter: string; readonly at?: readonly number[] })[];
+  /** What it was computed from, if that is more or less than the inputs say. */
+  readonly source?: string;
 }
 
 export interface OutputRecord {
@@ -46,6 +48,10 @@ export class KernelRecord {
   /** The options of its calls that are not the default: "precision half". */
   choices = '';
   readonly outputs: OutputRecord[] = [];
+  /** The kernels whose outputs it has read. */
+  readonly readFrom = new Set<number>();
+  /** What the last compared call has shown of each output: the error that it has added, and how it magnifies those of its inputs. */
+  readonly compared = new Map<string, { readonly own: number; readonly amplification: number }>();
 
   constructor(readonly name: string) {}
 
@@ -128,6 +134,7 @@ export class Records {
   }
 
   nameOf(kernel: number): string {
+    if (kernel === notCompared) return '(calls that were not compared)';
     return kernel === writtenByHost ? '(written by the page)' : this.kernels[kernel]!.name;
   }
 

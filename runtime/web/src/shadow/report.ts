@@ -26,7 +26,9 @@ export interface WorstElement {
   readonly element: readonly number[];
   readonly device: Sample;
   readonly reference: Sample;
-  readonly inputs: readonly (Sample & { readonly parameter: string; readonly reference: Sample | null })[];
+  readonly inputs: readonly (Sample & { readonly parameter: string; readonly at?: readonly number[]; readonly reference: Sample | null })[];
+  /** What it was computed from, if that is more or less than the inputs say. */
+  readonly source?: string;
 }
 
 export interface FollowedKernel {
@@ -146,8 +148,9 @@ function sample({ value, isReal }: Value): Sample {
 }
 
 function element(record: ElementRecord): WorstElement {
-  const inputs = record.inputs.map((input) => ({ parameter: input.parameter, ...sample(input), reference: null }));
-  return { call: record.call, output: record.output, element: record.index, device: sample(record.device), reference: sample(record.reference), inputs };
+  const inputs = record.inputs.map(({ parameter, at, ...input }) => ({ parameter, ...(at === undefined ? {} : { at }), ...sample(input), reference: null }));
+  const source = record.source === undefined ? {} : { source: record.source };
+  return { call: record.call, output: record.output, element: record.index, device: sample(record.device), reference: sample(record.reference), inputs, ...source };
 }
 
 function spread({ largest, typical }: Spread): ErrorSize {

@@ -5,6 +5,8 @@
 
 /** The number of what the page wrote, among those of kernels in the report. */
 export const writtenByHost = -1;
+/** The number of what calls added that were not compared. */
+export const notCompared = -2;
 
 export class Shares {
   private readonly all = new Map<number, number>();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Concludes from the records of a page which kernel is to blame for what: runtime/src/shadow/report.cpp. No GL: Node tests it.
-import type { DecisionRecord, ExceptionRecord, Records, ResultRecord } from './records.js';
+import type { DecisionRecord, ExceptionRecord, KernelRecord, Records, ResultRecord } from './records.js';
 import type { Point, Series } from './series.js';
+import { notCompared } from './shares.js';
 
 export interface Verdict {
   readonly kind: 'nan' | 'infinity' | 'decision' | 'unstable' | 'growth' | 'error' | 'fine' | 'nothing';
@@ -124,25 +125,51 @@ export function growthOf(series: Series): Growth {
   return points.length >= few ? shortGrowth(points) : noGrowth;
 }
 
-/** An instability shows in most of what the page computes over and over again. */
-function unstableVerdict(records: Records): Verdict | null {
+/**
+ * Whether a kernel's outputs reach its own inputs, directly or through other kernels: errors grow in such a cycle, and what only looks at
+ * them, as a total does, shows it.
+ */
+function readsItself(records: Records, kernel: number): boolean {
+  const reached = new Set<number>();
+  const open = [kernel];
+  for (let from = open.pop(); from !== undefined; from = open.pop()) {
+    for (const source of records.kernels[from]?.readFrom ?? []) {
+      if (source === kernel) return true;
+      if (reached.has(source)) continue;
+      reached.add(source);
+      open.push(source);
+    }
+  }
+  return false;
+}
+
+/**
+ * The kernel with the fastest growth among kernels, if errors grow in most of what these compute over and over again: an instability shows
+ * in most of it.
+ */
+function fastestAmong(records: Records, counts: (kernel: number) => boolean): { kernel: KernelRecord | null; growth: Growth } {
   const often = 4;
   let [growing, steady] = [0, 0];
-  let fastest = noGrowth;
-  let worst = null;
-  for (const kernel of records.kernels) {
-    if (kernel.amplification.count < often) continue;
+  let fastest: { kernel: KernelRecord | null; growth: Growth } = { kernel: null, growth: noGrowth };
+  for (const [i, kernel] of records.kernels.entries()) {
+    if (kernel.amplification.count < often || !counts(i)) continue;
     for (const { points } of kernel.outputs) {
       if (points.points.length === 0) continue;
       const growth = growthOf(points);
       if (growth.factor > 1) ++growing;
       else ++steady;
-      if (growth.factor <= fastest.factor) continue;
-      fastest = growth;
-      worst = kernel;
+      if (growth.factor > fastest.growth.factor) fastest = { kernel, growth };
     }
   }
-  if (worst === null || growing < steady) return null;
+  return growing < steady ? { kernel: null, growth: noGrowth } : fastest;
+}
+
+/** Feedback may pass through the page, which nobody sees: then all kernels count. */
+function unstableVerdict(records: Records): Verdict | null {
+  let found = fastestAmong(records, (kernel) => readsItself(records, kernel));
+  if (found.kernel === null) found = fastestAmong(records, () => true);
+  const { kernel: worst, growth: fastest } = found;
+  if (worst === null) return null;
   const others = records.calls / worst.calls;
   const text = `the error grows by a factor of ${short(fastest.factor ** others, 4)} with each call of ${worst.name}, for ${(fastest.calls / others).toFixed(0)} calls`;
   const verdict = { kernel: worst.name, call: 0 };
@@ -160,7 +187,13 @@ function shareVerdicts(records: Records, result: ResultRecord): Verdict[] {
   const shares = sharesOf(records);
   const most = shares.reduce((best, share, i) => (share > (shares[best] ?? 0) ? i : best), -1);
   const worst = records.kernels[most];
-  if (worst === undefined || !(result.largest > 0)) return [];
+  if (!(result.largest > 0)) return [];
+  const unknown = result.shares.entries().find(([kernel]) => kernel === notCompared)?.[1] ?? 0;
+  if (unknown > (shares[most] ?? 0)) {
+    const text = `calls that were not compared (every, kernels) add ${(100 * unknown).toFixed(0)} % of the error of what the page reads: ${digitsOf(result.largest)} of '${result.name}' survive`;
+    return [{ kind: 'error', kernel: '', call: 0, text }];
+  }
+  if (worst === undefined) return [];
   const choices = worst.choices === '' ? '' : ` (${worst.choices})`;
   const text = `${worst.name}${choices} adds ${(100 * shares[most]!).toFixed(0)} % of the error of what the page reads: ${digitsOf(result.largest)} of '${result.name}' survive`;
   return [{ kind: 'error', kernel: worst.name, call: worst.worst?.call ?? 0, text }];
