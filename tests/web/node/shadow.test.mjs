@@ -99,10 +99,43 @@ async function values(...calls) {
   const element = { name: 'float', fields: [{ scalar: 'float', width: 1 }] };
   for (const [number, call] of calls.entries()) {
     const arrays = Promise.resolve(call.map((x) => columns([x])));
-    await new CallRecorder(all, number + 1, kernel, [], [], 1).record([{ parameter: { name: 's' }, element, of: null, counterpart: null, arrays }]);
+    await new CallRecorder(all, number + 1, kernel, [], [], 1).record([{ index: 0, parameter: { name: 's' }, element, of: null, counterpart: null, arrays, changed: Promise.resolve([]) }]);
   }
   return all;
 }
+
+test('inherited errors are divided by what each input does, where calls have shown it', async () => {
+  const all = new Records();
+  const element = { name: 'float', size: 4, fields: [{ scalar: 'float', width: 1, offset: 0 }] };
+  const [left, right, add] = ['left', 'right', 'add'].map((name) => all.kernel(name));
+  const readOf = (index, kernel, relative) => {
+    const shares = new Shares();
+    shares.add(kernel, 1);
+    return { index, name: `x${index}`, counterpart: { errors: { relative, shares, hasNan: false, hasInfinity: false, exception: -1 } }, device: null, sample: null };
+  };
+  const sharesAfter = async (changed) => {
+    const arrays = Promise.resolve([columns([103]), columns([103]), columns([100])]);
+    const written = { index: 2, parameter: { name: 's' }, element, of: null, counterpart: null, arrays, changed: Promise.resolve(changed) };
+    await new CallRecorder(all, 1, add, [readOf(0, left, 0.5), readOf(1, right, 0.01)], [], 1).record([written]);
+    return new Map(all.results[0].shares.entries());
+  };
+  close((await sharesAfter([])).get(left), 0.5 / 0.51); // by the errors of the inputs
+  // The left one is small, and its error changes the sum by 1; that of the right one changes it by 2.
+  const shown = [[0, columns([102])], [1, columns([101])]];
+  for (const changed of [shown, []]) close((await sharesAfter(changed)).get(left), (1 / 103) / (1 / 103 + 2 / 103));
+});
+
+test('shares are those of the worst read', () => {
+  const all = new Records();
+  const result = all.result('r', false);
+  for (const [kernel, error] of [[0, 0.1], [1, 0.5], [2, 0.2]]) {
+    const shares = new Shares();
+    shares.add(kernel, 1);
+    result.last = error;
+    all.addError(result, shares);
+  }
+  assert.deepEqual([result.largest, result.shares.entries()], [0.5, [[1, 1]]]);
+});
 
 test('a value is compared with the largest that the reduce has given', async () => {
   const { results: [result] } = await values([1000, 1000, 1000], [0.5, 0.5, 0.25]);

@@ -127,6 +127,47 @@ async function folds(device) {
   expect('everything is right', found.verdicts[0].kind === 'fine' && found.followed === 4, JSON.stringify(found.verdicts));
 }
 
+/** A sum with a small part that is wrong by far, and a large one that is right to its last digit: the large one's error counts. */
+async function influences(device) {
+  const x = filled(device, [size], (i) => start[i]);
+  const [large, small, r] = [1, 2, 3].map(() => device.stream('float', [size]));
+  const sharesOf = async (name, calls) => {
+    const { found } = await followed(name, device, async () => {
+      for (let i = 0; i < calls; ++i) {
+        k.field.damp(1 / 3, x, large);
+        k.field.cancel(x, small);
+        k.add(large, small, r);
+      }
+      await r.read();
+    });
+    expect(`${name}: everything is followed`, found.followed === 3 * calls && found.notes.length === 0, JSON.stringify(found.notes));
+    return (kernel) => found.results[0].shares.find((each) => each.kernel === kernel)?.share ?? 0;
+  };
+  for (const calls of [1, 3]) {
+    const share = await sharesOf(`influences, ${calls}`, calls);
+    expect('inherited errors are divided by what each input does', share('field::damp') > 0.2 && share('field::cancel') < 0.1, JSON.stringify([share('field::damp'), share('field::cancel')]));
+  }
+}
+
+/** The shares of a result are those of its worst read. */
+async function worst(device) {
+  const x = filled(device, [size], (i) => start[i]);
+  const r = device.stream('float', [size]);
+  const { found } = await followed('worst', device, async () => {
+    for (const run of [() => k.field.damp(1 / 3, x, r), () => k.field.cancel(x, r), () => k.field.damp(1 / 3, x, r)]) {
+      run();
+      await r.read();
+    }
+    k.field.cancel(x, r);
+    await k.total(r);
+    k.field.damp(1 / 3, x, r);
+    await k.total(r);
+  });
+  const [read, sum] = found.results;
+  expect('shares are those of the worst read', read.reads === 3 && read.error.last < read.error.largest && read.shares[0].kernel === 'field::cancel', JSON.stringify(read));
+  expect('and of the worst value', sum.reads === 2 && sum.error.largest > 0, JSON.stringify(sum));
+}
+
 async function views(device) {
   const [x, y] = [filled(device, [8, 8], (i) => i / 3), filled(device, [1, 8], (i) => 1000 + i)];
   const [r, s] = [filled(device, [8, 8], () => 7), device.stream('float', [8, 8])];
@@ -372,7 +413,7 @@ const unhandled = [];
 addEventListener('unhandledrejection', ({ reason }) => unhandled.push(String(reason)));
 try {
   const device = await Device.create();
-  for (const run of [blame, folds, views, structs, decisions, exceptions, unstable, overshoots, grows, vanishes, named, choices, unseen, watched, ends]) {
+  for (const run of [blame, influences, worst, folds, views, structs, decisions, exceptions, unstable, overshoots, grows, vanishes, named, choices, unseen, watched, ends]) {
     try {
       await run(device);
       const error = device.context.getError();

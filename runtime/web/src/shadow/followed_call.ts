@@ -43,8 +43,13 @@ const isWritten = ({ role }: Parameter) => role === 'output' || role === 'accumu
 
 /** What of a call is read: elements that the reference has, or a value in a stream, which it takes from the device. */
 interface Read extends ReadOfCall {
-  readonly index: number;
   readonly isValue: boolean;
+}
+
+/** What the reference computes with its own elements for one input. */
+interface Changed {
+  readonly input: number;
+  readonly outputs: readonly AnyStream[];
 }
 
 export class FollowedCall {
@@ -118,10 +123,12 @@ export class FollowedCall {
     for (const { of } of this.outputs) if (of !== null) this.follower.counterpartOf(viewOf(of).stream).change(this.kernel);
     const start = performance.now();
     try {
+      // Before the reference replaces elements that it reads.
+      const own = this.isMeasured ? this.runWith(({ device }) => device!) : [];
+      const changed = this.isMeasured ? this.runInfluences() : [];
       const outputs = this.runOnReference();
-      const own = this.isMeasured ? this.runOwn() : [];
       records.referenceSeconds += (performance.now() - start) / 1000;
-      if (this.isMeasured) this.compare(result, own, outputs);
+      if (this.isMeasured) this.compare(result, own, changed, outputs);
       else this.estimate();
     } catch (error) {
       this.giveUp(error, result);
@@ -219,19 +226,30 @@ export class FollowedCall {
     return outputs;
   }
 
-  /** Returns the outputs of the reference with the device's inputs. */
-  private runOwn(): AnyStream[] {
+  /**
+   * For some calls with several inputs that may be wrong, makes the call with the reference's elements for one of them, and the device's for
+   * the others. Whether they are wrong is not known yet: comparisons come later.
+   */
+  private runInfluences(): Changed[] {
+    const followed = this.reads.filter(({ counterpart }) => counterpart !== null);
+    if (followed.length < 2 || !this.follower.records.influences.isDue(this.kernel)) return [];
+    const own = (read: Read) => read.counterpart!.taken(this.elementOf(read.index));
+    return followed.map((right) => ({ input: right.index, outputs: this.runWith((read) => (read === right ? own(read) : read.device!)) }));
+  }
+
+  /** Returns what the reference computes with other inputs than its own. */
+  private runWith(read: (read: Read) => AnyStream): AnyStream[] {
     const outputs: AnyStream[] = [];
     const written = (index: number, of: Elements | null) => {
       outputs.push(of === null ? this.valueStream(index) : this.temporary(new Stream<any, number>(this.follower.device, this.elementOf(index), of.shape)));
       return outputs[outputs.length - 1]!;
     };
-    this.caller.call(this.argumentsWith(({ device }) => device!, written), this.over);
+    this.caller.call(this.argumentsWith(read, written), this.over);
     return outputs;
   }
 
   /** Asks for the outputs of all three, and records their errors when the calls before have been recorded. */
-  private compare(result: unknown, own: readonly AnyStream[], reference: readonly Elements[]): void {
+  private compare(result: unknown, own: readonly AnyStream[], changed: readonly Changed[], reference: readonly Elements[]): void {
     const values = this.isToValues ? this.valuesOf(result as Promise<unknown>) : [];
     let next = 0;
     const written = this.outputs.map(({ index, of }, k): WrittenByCall => {
@@ -239,11 +257,12 @@ export class FollowedCall {
       const counterpart = of === null ? null : this.follower.counterpartOf(viewOf(of).stream);
       if (counterpart !== null && of!.size === counterpart.stream.size) counterpart.sample = seen(device.then((columns) => sampleOf(counterpart.stream.element, columns)));
       return {
-        parameter: this.parameters[index]!, element: this.called.file.elements[this.parameters[index]!.element]!, of, counterpart,
+        index, parameter: this.parameters[index]!, element: this.called.file.elements[this.parameters[index]!.element]!, of, counterpart,
         arrays: Promise.all([device, readColumns(own[k]!), readColumns(reference[k]!)]),
+        changed: seen(Promise.all(changed.map(async ({ input, outputs }) => [input, await readColumns(outputs[k]!)] as const))),
       };
     });
-    const bytes = this.outputs.reduce((sum, { of }) => sum + (of === null ? 0 : 3 * bytesOf(of)), 0);
+    const bytes = this.outputs.reduce((sum, { of }) => sum + (of === null ? 0 : (3 + changed.length) * bytesOf(of)), 0);
     for (const { arrays } of written) arrays.catch(() => undefined); // which the comparison sees
     const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, this.valuesGiven(), values.length);
     this.follower.compareLater(bytes, () => recorder.record(written), () => this.end());
@@ -251,7 +270,7 @@ export class FollowedCall {
 
   /** The call is not compared. What its outputs have is expected, in its turn among the comparisons. */
   private estimate(): void {
-    const written = this.outputs.flatMap(({ index, of }) => (of === null ? [] : [{ name: this.parameters[index]!.name, of, counterpart: this.follower.counterpartOf(viewOf(of).stream) }]));
+    const written = this.outputs.flatMap(({ index, of }) => (of === null ? [] : [{ index, name: this.parameters[index]!.name, of, counterpart: this.follower.counterpartOf(viewOf(of).stream) }]));
     for (const { counterpart } of written) counterpart.isEstimated = true;
     const recorder = new CallRecorder(this.follower.records, this.number, this.kernel, this.reads, [], 0);
     this.follower.compareLater(0, () => recorder.estimate(written), () => this.end());

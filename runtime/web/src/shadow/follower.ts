@@ -80,12 +80,11 @@ export class Follower implements Observer {
         result.elements = of.size;
         result.numbers = of.size * areReal.filter(Boolean).length;
         result.last = Math.max(errors.reportedTotal(), errors.relativeIntegers());
-        result.largest = Math.max(result.largest, result.last);
+        this.records.addError(result, measured(counterpart.errors, errors.relativeAll()).shares.copied());
         result.differs += errors.decisions.count;
         result.notFinite = errors.newNans.count + errors.newInfinities.count;
         result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
         result.exception = counterpart.errors.exception;
-        result.shares = measured(counterpart.errors, errors.relativeAll()).shares.copied();
         if (result.last > 0 && result.shares.sum() === 0) result.shares.add(writer, 1); // a call that was not compared
       });
     });

@@ -12,6 +12,8 @@ import type { ElementRecord, ExceptionRecord, Records, Value } from './records.j
 import { notCompared, Shares, writtenByHost } from './shares.js';
 
 export interface ReadOfCall {
+  /** Of the parameter. */
+  readonly index: number;
   readonly name: string;
   readonly isGather: boolean;
   readonly of: Elements;
@@ -24,6 +26,8 @@ export interface ReadOfCall {
 }
 
 export interface WrittenByCall {
+  /** Of the parameter. */
+  readonly index: number;
   readonly parameter: Parameter;
   readonly element: Element;
   /** Null if it is a value. */
@@ -31,6 +35,11 @@ export interface WrittenByCall {
   readonly counterpart: Counterpart | null;
   /** The device's elements, and those of the reference with the device's and with its own inputs. */
   readonly arrays: Promise<readonly [Columns, Columns, Columns]>;
+  /**
+   * For inputs, by their numbers, what the reference computes with their own elements and the device's other inputs. Empty for most
+   * calls.
+   */
+  readonly changed: Promise<readonly (readonly [input: number, elements: Columns])[]>;
 }
 
 /** Whether elements are of the same shape and type, so that a call may have computed some from the others, one by one. */
@@ -84,6 +93,7 @@ export class CallRecorder {
     this.takeInputErrors();
     const record = this.records.kernels[this.kernel]!;
     let amplification = 0;
+    for (const each of written) await this.recordInfluences(each);
     for (const each of written) {
       const arrays = await each.arrays;
       const start = performance.now();
@@ -105,18 +115,32 @@ export class CallRecorder {
    * What a call that is not compared is taken to leave: what the last compared call of the kernel has added, and what its inputs have, as
    * that call has magnified it. What exceeds it, when the elements are compared, is of calls that were not compared.
    */
-  estimate(written: readonly { readonly name: string; readonly of: Elements; readonly counterpart: Counterpart }[]): void {
+  estimate(written: readonly { readonly index: number; readonly name: string; readonly of: Elements; readonly counterpart: Counterpart }[]): void {
     this.takeInputErrors();
     const inputs = Math.max(0, ...this.inputErrors.map(({ relative }) => relative));
-    for (const { name, of, counterpart } of written) {
+    for (const { index, name, of, counterpart } of written) {
       const known = this.records.kernels[this.kernel]!.compared.get(name) ?? { own: 0, amplification: 1 };
       const relative = known.own + known.amplification * inputs;
       const has = (what: 'hasNan' | 'hasInfinity') => this.inputErrors.some((errors) => errors[what]);
       const isOfOthers = this.inputErrors.some((errors) => errors.isEstimated && errors.unseen !== this.kernel);
       const exception = Math.max(-1, ...this.inputErrors.map((errors) => errors.exception));
-      const shares = relative > 0 ? this.sharesOf(known.own / relative) : new Shares();
+      const shares = relative > 0 ? this.sharesOf(index, known.own / relative) : new Shares();
       const after = { relative, shares, hasNan: has('hasNan'), hasInfinity: has('hasInfinity'), exception, isEstimated: true, unseen: isOfOthers ? notCompared : this.kernel };
       counterpart.errors = withRest(after, of, counterpart);
+    }
+  }
+
+  /** Notes how far an output changes where one input is right. */
+  private async recordInfluences({ index, element, arrays, changed }: WrittenByCall): Promise<void> {
+    const errorOf = (input: number) => this.inputErrors[this.reads.findIndex((read) => read.index === input)]!.relative;
+    const isWrong = ([input]: readonly [number, Columns]) => errorOf(input) > 0;
+    const wrong = (await changed).filter(isWrong);
+    if (wrong.length < 2) return;
+    const [, own] = await arrays;
+    for (const [input, elements] of wrong) {
+      const change = compare(scalarsOf(element).map(isReal), elements, null, own);
+      const factor = Math.max(change.relativeTotal(), change.relativeIntegers()) / errorOf(input);
+      this.records.influences.set(this.kernel, index, input, factor);
     }
   }
 
@@ -174,11 +198,10 @@ export class CallRecorder {
     result.scale = Math.max(result.scale, errors.scale());
     result.last = result.scale > 0 && errors.reals > 0 ? Math.max(errors.absoluteTotal() / result.scale, errors.relativeIntegers()) : after.relative;
     if (errors.lost > 0) result.last = Infinity;
-    result.largest = Math.max(result.largest, result.last);
+    records.addError(result, after.shares);
     result.differs += errors.decisions.count;
     result.notFinite = errors.newNans.count + errors.newInfinities.count;
     result.withoutValue = Math.max(result.withoutValue, errors.nans.count + errors.infinities.count);
-    result.shares = after.shares;
   }
 
   /** What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had. */
@@ -189,18 +212,19 @@ export class CallRecorder {
       relative = errors.relativeIntegers();
       own = Math.min(1, errors.ownDecisions.count / errors.decisions.count);
     }
-    const shares = relative > 0 ? this.sharesOf(own) : new Shares();
+    const shares = relative > 0 ? this.sharesOf(written.index, own) : new Shares();
     const after = { relative, shares, hasNan: errors.nans.count > 0, hasInfinity: errors.infinities.count > 0, exception: -1, isEstimated: false, unseen: notCompared };
     return withRest(after, written.of, written.counterpart);
   }
 
-  private sharesOf(own: number): Shares {
+  private sharesOf(output: number, own: number): Shares {
     const shares = new Shares();
     shares.add(this.kernel, own);
-    const inputs = this.inputErrors.reduce((sum, { relative }) => sum + relative, 0);
-    for (const { relative, shares: before } of this.inputErrors) {
-      if (inputs > 0) shares.addAll(before, ((1 - own) * relative) / inputs);
-    }
+    const weights = this.records.influences.weights(this.kernel, output, this.reads.map(({ index }, i) => [index, this.inputErrors[i]!.relative]));
+    const inputs = weights.reduce((sum, weight) => sum + weight, 0);
+    this.inputErrors.forEach(({ shares: before }, i) => {
+      if (inputs > 0) shares.addAll(before, ((1 - own) * weights[i]!) / inputs);
+    });
     const missing = 1 - shares.sum();
     if (missing > 1e-6 && own < 1 - 1e-6) shares.add(writtenByHost, missing);
     return shares;

@@ -2,6 +2,7 @@
 //
 // What a shadow has found out about a page, before it is a report: runtime/src/shadow/report.hpp. Errors are relative to the root mean
 // square of the reference's components, unless said otherwise.
+import { Influences } from './influences.js';
 import { Series, Spread } from './series.js';
 import { notCompared, Shares, writtenByHost } from './shares.js';
 
@@ -92,6 +93,7 @@ export interface ResultRecord {
   withoutValue: number;
   /** The number of the record of the NaN or infinity that the last read's come from; -1 if there is none. */
   exception: number;
+  /** Of the read with the largest error. */
   shares: Shares;
 }
 
@@ -126,6 +128,7 @@ export class Records {
   readonly exceptions: ExceptionRecord[] = [];
   readonly decisions: DecisionRecord[] = [];
   readonly notes: string[] = [];
+  readonly influences = new Influences();
 
   /** The number of a kernel, whose record exists then. */
   kernel(name: string): number {
@@ -144,6 +147,13 @@ export class Records {
       this.results.push((found = { name, isValue, reads: 0, elements: 0, largest: 0, last: 0, scale: 0, differs: 0, numbers: 0, notFinite: 0, withoutValue: 0, exception: -1, shares: new Shares() }));
     }
     return found;
+  }
+
+  /** Adds the error of a read whose `last` is set; `shares`: whose error it is. */
+  addError(result: ResultRecord, shares: Shares): void {
+    const isWorst = result.last >= result.largest;
+    result.largest = Math.max(result.largest, result.last);
+    if (isWorst) result.shares = shares;
   }
 
   /** Adds a note once. */

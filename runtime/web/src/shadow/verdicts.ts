@@ -26,7 +26,7 @@ const where = (index: readonly number[]) => index.map((i) => `[${i}]`).join('');
 /** Each kernel's share of the errors of all results: a result counts as much as its error. */
 export function sharesOf(records: Records): number[] {
   const shares = records.kernels.map(() => 0);
-  const weightOf = ({ last }: ResultRecord) => Math.min(1, last);
+  const weightOf = ({ largest }: ResultRecord) => Math.min(1, largest);
   const all = records.results.reduce((sum, result) => sum + weightOf(result), 0);
   if (!(all > 0)) return shares;
   for (const result of records.results) {
