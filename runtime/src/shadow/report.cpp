@@ -4,6 +4,7 @@
 #include "shadow/report.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -125,10 +126,22 @@ Verdict decisionVerdict(const Report& report, const DecisionRecord& each) {
           each.first.call};
 }
 
+/// Whether errors of results may follow from a decision: its kernel has some share in them. A pixel of a picture that nothing reads has
+/// none.
+bool mayCauseErrors(const Report& report, const DecisionRecord& decision) {
+  constexpr double some = 0.1;
+  const bool areShared =
+      std::ranges::any_of(report.kernels, [](double share) { return share > 0; }, &KernelRecord::share);
+  return !areShared || decision.kernel < 0 ||
+         report.kernels[static_cast<std::size_t>(decision.kernel)].share >= some;
+}
+
 /// `areInherited`: those that differ since the inputs of the call do.
-void addDecisions(Report& report, bool areInherited) {
+template <class IsAdded>
+void addDecisions(Report& report, bool areInherited, IsAdded&& isAdded) {
   for (const DecisionRecord& each : report.decisions) {
-    if (each.isInherited == areInherited) report.verdicts.push_back(decisionVerdict(report, each));
+    if (each.isInherited == areInherited && isAdded(each))
+      report.verdicts.push_back(decisionVerdict(report, each));
   }
 }
 
@@ -399,12 +412,15 @@ void conclude(Report& report) {
   addExceptions(report, false);
   const bool hasDecided = isGrave(result, 1e-4);
   if (hasDecided) addOrder(report);
-  if (hasDecided) addDecisions(report, false);
+  const auto comesFirst = [&](const DecisionRecord& each) {
+    return hasDecided && mayCauseErrors(report, each);
+  };
+  addDecisions(report, false, comesFirst);
   if (unstable && !isHarmless && !isCause) report.verdicts.push_back(*unstable);
   addExceptions(report, true);
   if (isGrave(result, 2e-7)) addShares(report, result);
-  if (!hasDecided) addDecisions(report, false);
-  if (report.verdicts.empty()) addDecisions(report, true);
+  addDecisions(report, false, std::not_fn(comesFirst));
+  if (report.verdicts.empty()) addDecisions(report, true, [](const DecisionRecord&) { return true; });
   addFlushes(report);
   if (report.verdicts.empty()) addLost(report);
   addRest(report, result);

@@ -79,8 +79,14 @@ Report reportOf(const json& given) {
   result.name = "v";
   result.largest = result.last =
       error == "inf" ? std::numeric_limits<double>::infinity() : error.get<double>();
-  result.shares.add(0, 1);
+  const double decided = given.value("decision", 0.0);
+  result.shares.add(0, 1 - decided);
+  result.shares.add(1, decided);
   report.results.push_back(result);
+  if (decided > 0) {
+    report.kernels.emplace_back().name = "draw";
+    report.decisions.push_back({1, 1, false, {}});
+  }
   for (const json& each : given["exceptions"]) report.exceptions.push_back(exceptionOf(each));
   return report;
 }

@@ -10,7 +10,7 @@ const load = (name) => import(`${process.env.SK_WEB}/streamkernel/shadow/${name}
 const [{ Records }, { verdictsOf }] = await Promise.all(['records', 'verdicts'].map(load));
 const { cases } = JSON.parse(readFileSync(`${process.env.SK_SOURCE}/tests/shadow/growth.json`));
 
-function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady = 0, watched = false, result, exceptions }) {
+function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady = 0, watched = false, decision = 0, result, exceptions }) {
   const all = new Records();
   all.calls = calls * stride;
   all.followed = calls;
@@ -35,7 +35,13 @@ function recordsOf({ calls, stride = 1, absolute, relative, turned = 0, steady =
   }
   const read = all.result('v', false);
   read.largest = read.last = result === 'inf' ? Infinity : result;
-  read.shares.add(0, 1);
+  read.shares.add(0, 1 - decision);
+  read.shares.add(1, decision);
+  if (decision > 0) {
+    const value = { value: 0, isReal: true };
+    const first = { call: calls, output: 'depth', index: [0], device: value, reference: value, inputs: [] };
+    all.decisions.push({ kernel: all.kernel('draw'), elements: 1, isInherited: false, first });
+  }
   for (const [kind, call, isInReference] of exceptions) {
     const value = { value: 0, isReal: true };
     all.exceptions.push({ kind, kernel: 0, elements: 1, isInReference, first: { call, output: 'v', index: [0], device: value, reference: value, inputs: [] }, path: [] });

@@ -58,6 +58,15 @@ function decisionVerdict(records: Records, { kernel, elements, first }: Decision
   return { kind: 'decision', kernel: name, call: first.call, text: `${name} decides differently than in pairs of floats for ${count} in call ${first.call}: ${values}` };
 }
 
+/**
+ * Whether errors of results may follow from a decision: its kernel has some share in them. A pixel of a picture that nothing reads has
+ * none.
+ */
+function mayCauseErrors(shares: readonly number[], { kernel }: DecisionRecord): boolean {
+  const some = 0.1;
+  return !shares.some((share) => share > 0) || shares[kernel]! >= some;
+}
+
 /** Whether the results are worse than rounding explains. */
 function isGrave(result: ResultRecord | undefined, limit: number): boolean {
   return result !== undefined && (result.largest > limit || result.differs > 0);
@@ -211,8 +220,11 @@ function restOf(records: Records, result: ResultRecord | undefined, others: numb
 /** The gravest first. */
 export function verdictsOf(records: Records): Verdict[] {
   const result = records.results.reduce<ResultRecord | undefined>((worst, each) => (worst === undefined || each.largest > worst.largest ? each : worst), undefined);
-  const decisions = records.decisions.filter(({ isInherited }) => !isInherited).map((decision) => decisionVerdict(records, decision));
   const hasDecided = isGrave(result, 1e-4);
+  const shares = sharesOf(records);
+  const decisionsThat = (comeFirst: boolean) => records.decisions
+    .filter((decision) => !decision.isInherited && (hasDecided && mayCauseErrors(shares, decision)) === comeFirst)
+    .map((decision) => decisionVerdict(records, decision));
   const growth = unstableVerdict(records);
   const isHarmless = growth?.kind === 'growth' && !isGrave(result, 1e-5);
   const isCause = growth?.kind === 'unstable' && overflowsFirst(records);
@@ -220,11 +232,11 @@ export function verdictsOf(records: Records): Verdict[] {
   const verdicts = [
     ...(isCause ? growths : []),
     ...exceptionVerdicts(records, false),
-    ...(hasDecided ? decisions : []),
+    ...decisionsThat(true),
     ...(isHarmless || isCause ? [] : growths),
     ...exceptionVerdicts(records, true),
     ...(result !== undefined && isGrave(result, 2e-7) ? shareVerdicts(records, result) : []),
-    ...(hasDecided ? [] : decisions),
+    ...decisionsThat(false),
   ];
   return [...verdicts, ...restOf(records, result, verdicts.length), ...(isHarmless ? growths : [])];
 }
