@@ -282,6 +282,19 @@ check(all(result["error"]["largest"] < 1e-6 for result in report["results"]), f"
 done, report = run("fine", SK_CHECK="written")
 check(done.stdout == plain.stdout and "SK_CHECK=written" in report["notes"][0], f"written: {report['notes']}")
 
+# Names of files may have commas, backslashes and percent signs; a backslash keeps the first two, and %% stands for a percent sign.
+odd = os.path.join(folder.name, r"a, b=c\d")
+os.mkdir(odd)
+done, _ = run("half", shadow=r"a\, b=c\\d/100%%p x.html,every=1,inputs=a\, b=c\d/in\,puts=.npz")
+check(done.stderr == "" and sorted(os.listdir(odd)) == ["100%p x.html", "100%p x.json", "in,puts=.npz"],
+      f"odd names: {done.stderr} {os.listdir(odd)}")
+# A name may be as long as the system lets it.
+long = "r" * 250
+done, _ = run("half", shadow=f"{long}.html")
+check(done.stderr == "" and os.path.exists(os.path.join(folder.name, long + ".json")), f"long name: {done.stderr}")
+done, _ = run("half", shadow=f"{long}r.html")
+check("File name too long; the program runs without a shadow" in done.stderr, f"too long name: {done.stderr}")
+
 # The inputs of the worst calls, which sk accuracy takes.
 done, report = run("half", shadow="report.html,inputs=recorded.npz")
 with zipfile.ZipFile(os.path.join(folder.name, "recorded.npz")) as archive:

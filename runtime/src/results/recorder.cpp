@@ -133,7 +133,7 @@ Recorder::Recorder(std::string setting, std::uint64_t limit)
     file_.resize(file_.size() - times.size());
     measures_ = true;
   }
-  file_ = withProcess(std::move(file_), std::to_string(process_id_));
+  file_ = withProcess(file_, std::to_string(process_id_));
 }
 
 /// Runs what adds to the record, in the process that began it.

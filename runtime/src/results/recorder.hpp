@@ -2,7 +2,7 @@
 //
 // Records what the host of a program reads, which kernels it calls and how long they take, and writes all of it to the file
 // that SK_RESULTS names when the process ends: SK_RESULTS=FILE, or FILE,times to measure kernels on devices that queue calls, by
-// waiting around each. "%p" in the name stands for the process id. A device's recorder is null if the variable is not set, so
+// waiting around each. "%p" in the name stands for the process id, "%%" for a percent sign. A device's recorder is null if the variable is not set, so
 // that recording costs a test. Never disturbs the program: what cannot be recorded is left out, and the file says why.
 //
 // One recorder serves all devices of the process, because reads of several devices have one order. It is global state for the same

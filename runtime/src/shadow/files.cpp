@@ -21,8 +21,20 @@ std::string fileMark(const std::string& file) {
                      status.st_mtim.tv_nsec);
 }
 
+namespace {
+
+/// A name beside the file, which is not too long if the file's own name is not.
+std::string temporaryName(const std::string& file) {
+  constexpr std::size_t most = 200;
+  const std::size_t slash = file.rfind('/');
+  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
+  return fmt::format("{}{}.{}", file.substr(0, begin), file.substr(begin, most), ::getpid());
+}
+
+}  // namespace
+
 std::string replaceFile(const std::string& file, std::string_view text) {
-  const std::string temporary = fmt::format("{}.{}", file, ::getpid());
+  const std::string temporary = temporaryName(file);
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) return fmt::format("cannot write '{}': {}", file, std::strerror(errno));
   int error = 0;

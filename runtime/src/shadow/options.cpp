@@ -106,14 +106,29 @@ std::string Options::json() const {
   return (hasEnding ? report.substr(0, dot) : report) + ".json";
 }
 
+std::string asOption(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == ',' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
 Options parseOptions(std::string_view text) {
   Options options;
-  const auto next = [&] {
-    const std::size_t comma = text.find(',');
-    const std::string_view part = text.substr(0, comma);
-    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
-    return part;
-  };
+  const auto next =
+      [&] {  // up to the next comma; a backslash before a comma or a backslash makes it part of a name
+        std::string part;
+        std::size_t i = 0;
+        for (; i < text.size() && text[i] != ','; ++i) {
+          const char after = i + 1 < text.size() ? text[i + 1] : '\0';
+          if (text[i] == '\\' && (after == ',' || after == '\\')) ++i;
+          part += text[i];
+        }
+        text.remove_prefix(std::min(i + 1, text.size()));
+        return part;
+      };
   options.report = next();
   if (!options.report.ends_with(".html") && !options.report.ends_with(".json")) {
     throw Error(
@@ -122,7 +137,8 @@ Options parseOptions(std::string_view text) {
                     options.report));
   }
   while (!text.empty()) {
-    const std::string_view part = next();
+    const std::string word = next();
+    const std::string_view part = word;
     const std::size_t equals = part.find('=');
     set(options, part.substr(0, equals),
         equals == std::string_view::npos ? std::string_view{} : part.substr(equals + 1));

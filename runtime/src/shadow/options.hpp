@@ -37,6 +37,9 @@ struct Options {
   std::string json() const;
 };
 
+/// A name as part of SK_SHADOW's value: a comma or a backslash in it has a backslash before it.
+std::string asOption(std::string_view text);
+
 /// Reads the value of SK_SHADOW. Throws sk::Error, which names the option and the valid ones.
 Options parseOptions(std::string_view text);
 

@@ -15,6 +15,7 @@
 #include <catch2/catch.hpp>
 
 #include "sk/error.hpp"
+#include "support/process_name.hpp"
 
 using namespace sk;
 
@@ -82,6 +83,13 @@ TEST_CASE("threads write to one file of a trace") {
   }
   CHECK(file.count("{\"name\":\"an event\"}") == 800);
   CHECK(file.isClosed());
+}
+
+TEST_CASE("names of files that processes share") {
+  CHECK(sk::withProcess("a%p/b%p", "7") == "a7/b7");
+  CHECK(sk::withProcess("%%p %%%p 100% %d %", "7") == "%p %7 100% %d %");
+  for (const char* const name : {"%p", "%%p", "100%", "%", "a, b=c", ""})
+    CHECK(sk::withProcess(sk::withoutProcess(name), "7") == name);
 }
 
 TEST_CASE("%p is the number of the process") {
