@@ -215,6 +215,26 @@ assert inputs['g']['value'] == 2 and inputs['far']['hex'] == 'true' and inputs['
 number = int(inputs['b.kind']['value'])
 assert [inputs['b.at.' + c]['value'] for c in 'xy'] == [1 + (2 * number + k) % 7 for k in (0, 1)], inputs
 assert kernels['sum', 'tree']['metrics']['rel err'] < 1e-6 and 'extremes' not in kernels['sum', 'tree'], kernels['sum', 'tree']"
+# Results next to 0 that no mode gets right: errors are compared with the root mean square of all.
+cat >warm.sk <<'EOF2'
+kernel void radiate(float room, float u<>, out float r<>) {
+  float t = room + u;
+  r = t * t - room * room;
+}
+EOF2
+record warm.npz "radiate/room: ('<f4', (), [300])
+radiate/u: ('<f4', (1000,), lambda i: 10 ** (i / 40 - 28))
+radiate/r.shape: ('<i8', (1,), [1000])"
+run 0 warm.sk --rounds 2 --device native --inputs warm.npz --tolerance 1e-5 --json all.json
+matches ' err/rms +rel err '
+matches '^  the cheapest within 1e-05: (extended|double)$'
+json "
+single, double = (kernels['radiate', mode] for mode in ('single', 'double'))
+assert single['metrics']['rel err'] == double['metrics']['rel err'] == 1, (single, double)
+assert 0.01 < single['metrics']['err/rms'] < 10 and double['metrics']['err/rms'] < 1e-6, (single, double)
+# The inputs of the largest error are those that matter.
+u, wanted = single['worst']['inputs']['u']['value'], single['worst']['wanted']['value']
+assert u > 1e-6 and abs(single['worst']['got']['value'] - wanted) == single['metrics']['abs err'], single['worst']"
 # A row that all rows of the domain read.
 record some.npz "$(sed '1s/(6, 50)/(1, 50)/' <<<"$roots")"
 run 0 kernels.sk "${few[@]}" --device native --inputs some.npz --kernel math::roots --json all.json

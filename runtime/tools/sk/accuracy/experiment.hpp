@@ -45,7 +45,7 @@ struct OutputErrors {
 
 /// The errors of a mode.
 struct Grade {
-  std::vector<Metric> metrics = {};  ///< the first is the relative error, by which modes are compared
+  std::vector<Metric> metrics = {};  ///< the first is a relative error, by which modes are compared
   std::optional<double> bound = {};  ///< for the metric that Experiment::bounded names
   bool isWithinBound = true;
   /// For programs that compute each element independently: the inputs of the largest error. For kernels of a

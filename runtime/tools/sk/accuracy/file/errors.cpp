@@ -36,13 +36,17 @@ double ulpsOf(Scalar scalar, double got, double wanted) {
 
 std::vector<Metric> ScalarErrors::metrics() const {
   const bool isOther = wrongClass > 0;
-  return {{"rel err", isOther ? HUGE_VAL : relative},
-          {"abs err", isOther ? HUGE_VAL : absolute},
-          {"max ulp", isOther && wrongClass == tried ? HUGE_VAL : largest},
-          {"mean ulp", isOther && wrongClass == tried ? HUGE_VAL
-                       : numbers == 0                 ? 0
-                                                      : sum / static_cast<double>(numbers)},
-          {"wrong class", static_cast<double>(wrongClass)}};
+  std::vector<Metric> all;
+  if (scale == Scale::RootMeanSquare) all.push_back({"err/rms", isOther ? HUGE_VAL : ofScale});
+  const std::vector<Metric> others = {{"rel err", isOther ? HUGE_VAL : relative},
+                                      {"abs err", isOther ? HUGE_VAL : absolute},
+                                      {"max ulp", isOther && wrongClass == tried ? HUGE_VAL : largest},
+                                      {"mean ulp", isOther && wrongClass == tried ? HUGE_VAL
+                                                   : numbers == 0                 ? 0
+                                                                  : sum / static_cast<double>(numbers)},
+                                      {"wrong class", static_cast<double>(wrongClass)}};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 void ErrorSizes::add(const Results& got, const Results& wanted, std::size_t inputs, int draw, bool isDrawn) {
@@ -70,10 +74,16 @@ void ErrorSizes::add(const Results& got, const Results& wanted, std::size_t inpu
         ++errors.numbers;
       }
       if (ulps > 0) keep(place, ulps);
-      if (ulps <= errors.largest && !(errors.largest == 0 && errors.tried == 1)) continue;
-      errors.largest = ulps;
+      errors.largest = std::max(errors.largest, ulps);
+      errors.squares += place.wanted * place.wanted;
+      const double size = errors.scale == Scale::RootMeanSquare ? std::fabs(place.got - place.wanted) : ulps;
+      if (size <= errors.worstSize && errors.tried > 1) continue;
+      errors.worstSize = std::max(errors.worstSize, size);
       if (errors.wrongClass == 0) errors.worst = place;
     }
+    const double rms =
+        std::sqrt(errors.squares / static_cast<double>(std::max<std::size_t>(errors.tried, 1)));
+    errors.ofScale = errors.absolute == 0 ? 0 : errors.absolute / rms;
   }
 }
 
@@ -94,9 +104,13 @@ ScalarErrors ErrorSizes::total() const {
       continue;
     }
     const ScalarErrors& one = errors_[c];
-    const bool isWorse = total.wrongClass == 0 && (one.wrongClass > 0 || one.largest > total.largest);
+    const bool isLarger =
+        one.scale == Scale::RootMeanSquare ? one.ofScale > total.ofScale : one.largest > total.largest;
+    const bool isWorse = total.wrongClass == 0 && (one.wrongClass > 0 || isLarger);
     if (isFirst || isWorse) total.worst = one.worst;
     isFirst = false;
+    total.scale = one.scale;
+    total.ofScale = std::max(total.ofScale, one.ofScale);
     total.relative = std::max(total.relative, one.relative);
     total.absolute = std::max(total.absolute, one.absolute);
     total.largest = std::max(total.largest, one.largest);

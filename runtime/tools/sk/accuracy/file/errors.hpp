@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -28,15 +29,25 @@ struct LargeError {
   double ulps = 0;  ///< infinite if the result is of another class
 };
 
+/// What errors are relative to, and which of them is the worst.
+enum class Scale : std::uint8_t {
+  Result,  ///< the right result: of any size, as drawn inputs have
+  RootMeanSquare,  ///< that of all right results, as in a shadow's report: of recorded inputs, some results may be next to 0
+};
+
 /// The errors of one scalar of the results.
 struct ScalarErrors {
+  Scale scale = Scale::Result;
   double relative = 0, absolute = 0, largest = 0;  ///< the last in ulp
   double sum = 0;  ///< of errors in ulp
+  double squares = 0;  ///< the sum of those of right results
+  double ofScale = 0;  ///< the largest absolute error over the root mean square, for Scale::RootMeanSquare
+  double worstSize = 0;  ///< what makes an error the worst: ulp, or the absolute error
   std::size_t numbers = 0;  ///< results of the right class that are drawn
   std::size_t tried = 0, wrongClass = 0, wrongInteger = 0;
-  ErrorPlace worst = {};  ///< the first result of a wrong class, else the largest error in ulp
+  ErrorPlace worst = {};  ///< the first result of a wrong class, else the largest error by worstSize
 
-  /// "rel err" and "abs err" (infinite if a class is wrong), "max ulp" (infinite if no result is of the right class), "mean
+  /// For Scale::RootMeanSquare first "err/rms"; then "rel err" and "abs err" (infinite if a class is wrong), "max ulp" (infinite if no result is of the right class), "mean
   /// ulp", "wrong class".
   std::vector<Metric> metrics() const;
 };
@@ -45,13 +56,14 @@ struct ScalarErrors {
 /// integers count as right or wrong.
 class ErrorSizes {
  public:
-  explicit ErrorSizes(std::span<const ResultScalar> scalars) : scalars_(scalars), errors_(scalars.size()) {}
+  explicit ErrorSizes(std::span<const ResultScalar> scalars, Scale scale = Scale::Result)
+      : scalars_(scalars), errors_(scalars.size(), ScalarErrors{.scale = scale}) {}
 
   /// Adds the results of drawn inputs, or of inputs that were looked for, which do not count in means.
   void add(const Results& got, const Results& wanted, std::size_t inputs, int draw, bool isDrawn = true);
   /// The metrics over all scalars, with "wrong int" if there are integers.
   std::vector<Metric> metrics() const;
-  /// The first result of a wrong class, else the largest error in ulp.
+  /// The first result of a wrong class, else the largest error: in ulp, or over the root mean square.
   ErrorPlace worst() const { return total().worst; }
   const std::vector<ScalarErrors>& scalars() const { return errors_; }
   /// The largest errors, each of another element, the largest first.

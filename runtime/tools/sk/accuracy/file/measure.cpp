@@ -359,7 +359,7 @@ class Measured {
   }
 
   Grade grade(const sk::CallOptions& options) {
-    ErrorSizes sizes(scalars_);
+    ErrorSizes sizes(scalars_, isRecorded_ ? Scale::RootMeanSquare : Scale::Result);
     ErrorCounts counts(scalars_);
     const std::size_t drawn = sets_.size();
     for (std::size_t s = 0; s < drawn; ++s) {
