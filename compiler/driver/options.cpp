@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -188,6 +189,15 @@ void addNativeOptions(CLI::App& app, Words& words) {
       "it link libquadmath");
 }
 
+/// CLI11's own check of positive numbers prints its limits with hundreds of digits.
+std::string checkElements(const std::string& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool isNumber = error == std::errc() && end == text.data() + text.size();
+  if (isNumber && number > 0 && number <= std::numeric_limits<double>::max()) return {};
+  return fmt::format("'{}' is no number of elements; give one such as 1000 or 1e6", text);
+}
+
 void addBoundsOptions(CLI::App& app, Words& words) {
   app.add_option("--range", words.ranges,
                  "--emit=bounds: the numbers that a parameter, a member or a component has, such as x=0:1, "
@@ -196,7 +206,7 @@ void addBoundsOptions(CLI::App& app, Words& words) {
       ->type_name("NAME=LOW:HIGH");
   app.add_option("--elements", words.options.bounds.elements,
                  "--emit=bounds: how many elements reduces and scans fold")
-      ->check(CLI::PositiveNumber)
+      ->check(checkElements, "")
       ->type_name("N");
   app.add_flag("--json", words.options.boundsAsJson, "--emit=bounds: print JSON");
 }

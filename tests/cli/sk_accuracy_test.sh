@@ -128,6 +128,12 @@ for i, (x, y, text) in enumerate(names):
 EOF
 run 0 sum --data wide "${small[@]}" --chart wide.png
 [[ $(head -c 8 wide.png | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]] || broken "no PNG"
+for number in -1 nan inf; do
+  run 1 sum --tolerance $number
+  says "--tolerance: '$number' is no number from 0 on"
+done
+run 1 sum --chart no/such.svg
+says "cannot write 'no/such.svg'"
 PATH=/nonexistent run 1 sum --data wide "${small[@]}" --chart wide.svg
 says 'there is no gnuplot to draw the chart; install it'
 

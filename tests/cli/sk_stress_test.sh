@@ -20,6 +20,12 @@ texts = {r['text']: ' '.join(f['text'] for f in r['findings']) for r in all['run
 broken = {r['text'] for r in all['runs'] if r['breaks']}
 $1" || broken "the JSON is not as expected: $1"; }
 
+for number in -1 nan 0 1e-400; do
+  run 1 --limit $number -- "$program" step 20
+  says "--limit: '$number' is no number from 0.001 to 1e+07"
+done
+run 1 --json no/such.json -- "$program" step 20
+says "cannot write 'no/such.json'"
 run 0 --help
 for option in --only --sizes --limit --json --keep --all --any-status; do prints "$option"; done
 
@@ -93,6 +99,13 @@ prints 'put one in braces, --size={256}'
 # A limit ends a run, and the pages of all runs can be kept.
 run 0 --only 'stressed::scale.shift' --keep pages -- "$program" plain 20
 [[ -s pages/000.html && -s pages/002.json ]] || broken 'the pages are not kept'
+# Whatever the names of folders have that SK_SHADOW's value has, too.
+for name in 'a,every=2' 'a b=c%p' '%%p\,d' "$(printf 'n%.0s' {1..240})"; do
+  run 0 --only 'stressed::scale.shift' --keep "$name" -- "$program" plain 20
+  [[ $(ls "$name") == $(ls pages) ]] || broken "the pages are not kept in '$name': $(ls "$name")"
+  mkdir "temporary $name"
+  TMPDIR="$place/temporary $name" run 0 --only 'stressed::scale.shift' -- "$program" plain 20
+done
 # The files of the program are in the end those of the program as it is.
 "$program" store results.txt
 cp results.txt before.txt

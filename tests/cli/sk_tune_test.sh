@@ -76,6 +76,13 @@ prints 'raised, and none of them can be left out: tuned::subtract'
 refuses 'is of another program, other arguments, or other results that count' --tolerance 1e-7 --continue -- "$program" both 12000
 refuses "there is no state 'no.toml.state'" --tolerance 1e-7 -o no.toml --continue -- "$program" both 500
 refuses 'nothing reaches the tolerance: the best is error ' --tolerance 1e-12 --budget 100s -- "$program" both 500
+# The program gets its results as floats, whose rounding no choice can take away.
+[[ $err =~ "'tuned::state' is read as floats: the right numbers have an error of "([0-9.e-]+)" (l2) when they are rounded to floats" ]] ||
+  broken 'no word of the rounding of results'
+python3 -c "assert 2e-9 < ${BASH_REMATCH[1]} < 2**-24" || broken 'rounding adds at most half a unit in the last place'
+# What is written as text is not read as floats here.
+run 0 --tolerance 1e-6 --budget 100s --result-json sums.json:run.sums.0 -- "$program" text sums.json 500
+[[ $err != *'rounded to floats'* ]] || broken 'numbers of files are taken for floats'
 
 # Only what is asked for counts, each by its own metric.
 run 0 --result 'tuned::rest=ulp:4' --result tuned::total=relative:1e-3 --budget 100s --json all.json -- "$program" both 500
@@ -92,6 +99,10 @@ for attempt in 1 2 3; do
   ((attempt < 3)) || busy
 done
 has called.toml 'precision = "single"'
+
+# The folder for temporary files may have any name.
+mkdir 'a,times %p%%'
+TMPDIR=$place/'a,times %p%%' run 0 --tolerance 1e-3 --budget 100s -- "$program" both 100
 
 # All ways to read, each by its name.
 run 0 --tolerance 1e-3 --budget 100s --json all.json -- "$program" reads 100
@@ -113,6 +124,19 @@ says "it is kept as 'wide.toml.rejected'"
 prints 'rejected: '
 has wide.toml.rejected 'precision = "single"'
 [[ ! -e wide.toml ]] || broken 'the rejected file has its own name'
+
+# A command line that cannot serve is refused before the search.
+early() { refuses "$1" --tolerance 1e-3 --verify "$2" "${@:3}" -- "$program" both 500; }
+early "--verify 'nothere 4' ends with status 127" 'nothere 4'
+early "ends with status 3" "'$program' status 50"
+early "has recorded no results: it opens no device" true
+early "reads no 'tuned::rest', 'tuned::total', as the program does; it reads tuned::state" "'$program' settle 50"
+early "calls no kernel of the program, such as tuned::settle" "'$program' light 50"
+early "cannot be judged: '/bin/sh' runs tuned::settle on 'native' even with SK_DEVICE=reference" "'$program' named 50"
+early "reads no 'tuned::rest', as the program does" "'$program' settle 50" --result tuned::rest
+# So are files that cannot be written.
+for option in -o --json; do refuses "cannot write 'no/such.file'" --tolerance 1e-3 $option no/such.file -- "$program" both 500; done
+refuses "cannot write 'no/such.svg'" --tolerance 1e-3 --chart no/such.svg -- "$program" both 500
 
 # What is wide because a file says so is tried as floats together: a kernel alone, or a stream alone, would convert all elements.
 printf '[kernels."*"]\nprecision = "double"\n[streams."*"]\nstorage = "double"\n' >base.toml
@@ -181,6 +205,15 @@ refuses 'starts 2 processes' --tolerance 1e-3 -- sh -c "'$program' both 9; '$pro
 refuses "there is no program './nothere'" --tolerance 1e-3 -- ./nothere
 refuses "there is no metric 'l3'; choose one of relative, absolute, ulp, l2, psnr" --tolerance 1e-3 --metric l3 -- "$program" both 500
 refuses "'0' is no tolerance above 0" --result tuned::rest=l2:0 -- "$program" both 500
+for number in -1 0 nan inf 1e-400 1e400 x; do
+  refuses "--tolerance: '$number' is no number above 0; give one such as 1e-5" --tolerance $number -- "$program" both 500
+  refuses "--psnr: '$number' is no number above 0" --psnr $number --result-file state.tga -- "$program" picture state.tga 500
+done
+for number in -1 nan inf 1e400; do
+  refuses "'$number' is no tolerance above 0" --result tuned::rest=l2:$number -- "$program" both 500
+done
+run 0 --help
+[[ $out != *00000000000000000000* ]] || broken 'numbers are printed with hundreds of digits'
 refuses '--tolerance is required' -- "$program" both 500
 refuses 'is too small: a run of' --tolerance 1e-3 --budget 0.001 -- "$program" both 500
 refuses "'soon' is no budget" --tolerance 1e-3 --budget soon -- "$program" both 500

@@ -196,6 +196,9 @@ prints 'r: 0 to 2, error at most 0'
 run 0 --emit=bounds --range v=1:2 --json --target=fragment product.sk
 prints '"target": "fragment"'
 refuses "'v' is not a range; write NAME=LOW:HIGH" --emit=bounds --range v product.sk
+for number in -1 0 nan inf x; do
+  refuses "--elements: '$number' is no number of elements; give one such as 1000 or 1e6" --emit=bounds --elements $number product.sk
+done
 refuses '--range, --elements and --json are for --emit=bounds' --range v=0:1 product.sk
 refuses '--emit=bounds takes one target, native or fragment' --emit=bounds --target=fragment,native product.sk
 echo '{"devices": 3' >broken.json

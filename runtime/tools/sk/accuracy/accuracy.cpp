@@ -29,6 +29,7 @@
 #include "accuracy/programs.hpp"
 #include "accuracy/progress.hpp"
 #include "info/device_info.hpp"
+#include "number_checks.hpp"
 
 namespace sk_tool {
 
@@ -249,10 +250,6 @@ std::string checkSize(const std::string& text) {
   return fmt::format("'{}' is no size; give {} to {} elements, or HxW of them", text, least, most);
 }
 
-void checkWritable(const std::string& file) {
-  if (!std::ofstream(file, std::ios::app)) throw std::runtime_error(fmt::format("cannot write '{}'", file));
-}
-
 void writeJson(const Options& options, const sk::Device& device, const std::vector<Experiment>& experiments) {
   Json json = {{"schema", schema},           {"streamkernel", SK_VERSION},
                {"device", describe(device)}, {"size", options.measurement.size},
@@ -344,7 +341,7 @@ void runAccuracy(Options& options) {
     for (const std::int64_t extent : extentsIn(options.size))
       options.measurement.size *= static_cast<std::size_t>(extent);
   }
-  if (!options.chartFile.empty()) checkChartName(options.chartFile);
+  if (!options.chartFile.empty()) checkChart(options.chartFile);
   if (!options.jsonFile.empty()) checkWritable(options.jsonFile);
   if (!options.functions.functions.empty()) {
     runFunctions(options);
@@ -395,7 +392,7 @@ void addAccuracy(CLI::App& app) {
       ->add_option("--tolerance", options->tolerance,
                    "Name the cheapest mode with a relative error of this or less")
       ->type_name("T")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zeroOrAbove());
   command->add_option("--json", options->jsonFile, "Also write JSON, one record a program, mode and data")
       ->type_name("FILE");
   command->add_option("--chart", options->chartFile, "Also draw error over time, by gnuplot, as .svg or .png")

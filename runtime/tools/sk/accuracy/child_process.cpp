@@ -42,12 +42,29 @@ namespace {
 
 bool isPicture(const std::string& file) { return file.ends_with(".png"); }
 
+[[noreturn]] void failWithoutGnuplot() {
+  throw std::runtime_error(
+      "there is no gnuplot to draw the chart; install it (Debian: gnuplot-nox), or take --json FILE and "
+      "draw from that");
+}
+
 }  // namespace
 
-void checkChartName(const std::string& file) {
+void checkWritable(const std::string& file) {
+  const std::filesystem::path path(file), parent = path.parent_path();
+  std::error_code error;
+  const bool isThere = std::filesystem::exists(path, error);
+  const std::filesystem::path written = isThere ? path : parent.empty() ? "." : parent;
+  if (std::filesystem::is_directory(path, error) || ::access(written.c_str(), W_OK) != 0)
+    throw std::runtime_error(fmt::format("cannot write '{}'", file));
+}
+
+void checkChart(const std::string& file) {
   if (!isPicture(file) && !file.ends_with(".svg")) {
     throw std::runtime_error(fmt::format("no chart can be '{}': its name must end in .svg or .png", file));
   }
+  checkWritable(file);
+  if (!runProgram({"gnuplot", "--version"}, Messages::Hidden)) failWithoutGnuplot();
 }
 
 std::string quoted(const std::string& text) {
@@ -73,11 +90,7 @@ void runGnuplot(const std::string& file, const std::string& script) {
   const std::string scriptFile = (folder.path() / "chart.gnuplot").string();
   std::ofstream(scriptFile) << script;
   const std::optional<int> status = runProgram({"gnuplot", scriptFile});
-  if (!status) {
-    throw std::runtime_error(
-        "there is no gnuplot to draw the chart; install it (Debian: gnuplot-nox), or take --json FILE and "
-        "draw from that");
-  }
+  if (!status) failWithoutGnuplot();
   if (*status != 0) throw std::runtime_error("gnuplot could not draw the chart");
 }
 

@@ -23,8 +23,11 @@ enum class Messages : std::uint8_t { Shown, Hidden };
 std::optional<int> runProgram(std::vector<std::string> words, Messages messages = Messages::Shown,
                               const std::string& output = "");
 
-/// Throws std::runtime_error unless the file's name ends in .svg or .png.
-void checkChartName(const std::string& file);
+/// Throws std::runtime_error unless a file of this name can be written, so that long work does not end in vain. Makes no file.
+void checkWritable(const std::string& file);
+
+/// Likewise for a chart: throws unless its name ends in .svg or .png, and gnuplot is there to draw it.
+void checkChart(const std::string& file);
 
 /// Quotes as gnuplot does.
 std::string quoted(const std::string& text);

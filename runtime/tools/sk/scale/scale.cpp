@@ -19,6 +19,7 @@
 #include "accuracy/child_process.hpp"
 #include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/ranges.hpp"
+#include "number_checks.hpp"
 #include "scale/model.hpp"
 #include "scale/quantities.hpp"
 #include "scale/rates.hpp"
@@ -323,7 +324,8 @@ void runScale(const ScaleOptions& options) {
   report.cluster.network = Network::parse(options.network);
   report.cluster.hasOverlap = !options.hasNoOverlap;
   report.bar = options.bar;
-  if (!options.chartFile.empty()) checkChartName(options.chartFile);
+  if (!options.jsonFile.empty()) checkWritable(options.jsonFile);
+  if (!options.chartFile.empty()) checkChart(options.chartFile);
   StepOptions choices{.kernels = options.kernels, .constants = options.constants, .ranges = {}};
   for (const std::string& value : options.values) choices.ranges.addValues(value);
   const KernelLibrary library(options.file, options.build);  // must outlive the device
@@ -391,7 +393,7 @@ void addScale(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--no-overlap", options->hasNoOverlap, "Kernels wait for every exchange");
   add("--efficiency", options->bar, "Below this, more GPUs do not pay (default: 0.7)", "E")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(realIn(0, 1));
   add("--size", options->size, "Elements of a measurement (default: 2^24 on a GPU, 2^22 on cores)", "N")
       ->check(CLI::Range(std::int64_t{1} << 14, std::int64_t{1} << 28));
   add("--device", options->device, "The device to measure on (as in 'sk accuracy')", "NAME");

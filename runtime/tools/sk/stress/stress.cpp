@@ -26,7 +26,10 @@
 #include "accuracy/child_process.hpp"
 #include "accuracy/progress.hpp"
 #include "application/program_options.hpp"
+#include "number_checks.hpp"
+#include "shadow/options.hpp"
 #include "stress/report.hpp"
+#include "support/process_name.hpp"
 
 namespace sk_tool {
 
@@ -48,8 +51,9 @@ class Application {
 
   Run run(const Case& of, std::chrono::duration<double> limit) {
     const std::string name = fmt::format("{:03}", count_++);
-    std::string shadow = (folder_ / (name + "-%p.html")).string() + ",given=list";
-    for (const std::string& setting : of.settings) shadow += ",set=" + setting;
+    const std::string page = sk::withoutProcess(folder_.string()) + "/" + name + "-%p.html";
+    std::string shadow = sk::shadow::asOption(page) + ",given=list";
+    for (const std::string& setting : of.settings) shadow += ",set=" + sk::shadow::asOption(setting);
     Run run{.of = of};
     run.process = runLimited(wordsOf(of), {{"SK_SHADOW", shadow}, {"SK_RESULTS", std::nullopt}}, limit);
     const std::filesystem::path report = onlyReport(name);
@@ -182,8 +186,7 @@ void clearFolder(const std::filesystem::path& folder) {
 
 void runStress(const Options& options) {
   checkEnvironment();
-  if (!options.json.empty() && !std::ofstream(options.json, std::ios::app))
-    throw std::runtime_error(fmt::format("cannot write '{}'", options.json));
+  if (!options.json.empty()) checkWritable(options.json);
   std::optional<TemporaryFolder> temporary;
   if (options.keep.empty()) {
     temporary.emplace();
@@ -250,7 +253,7 @@ void addStress(CLI::App& app) {
       ->add_option(
           "--limit", options->limit,
           "the most seconds of a run (default: ten times those of the program as it is, and 15 more)")
-      ->check(CLI::Range(1e-3, 1e7));
+      ->check(realIn(1e-3, 1e7));
   command->add_option("--json", options->json, "also write all runs as JSON")->type_name("FILE");
   command->add_option("--keep", options->keep, "keep the page of each run's shadow in this folder")
       ->type_name("FOLDER");

@@ -10,6 +10,7 @@
 
 #include "accuracy/child_process.hpp"
 #include "application/process.hpp"
+#include "support/process_name.hpp"
 
 namespace sk_tool::tune {
 
@@ -59,7 +60,8 @@ RunResult Application::run(const RunOptions& options) const {
   const TemporaryFolder folder;
   auto changes = options.environment;
   changes["SK_SHADOW"] = std::nullopt;  // records what the program reads, so that nothing is left for this
-  changes["SK_RESULTS"] = (folder.path() / "%p.results").string() + (options.measures ? ",times" : "");
+  changes["SK_RESULTS"] =
+      sk::withoutProcess(folder.path().string()) + "/%p.results" + (options.measures ? ",times" : "");
   std::vector<std::optional<FileTime>> before;
   for (const ResultFile& each : files_) before.push_back(timeOf(each.file));
   const EndedProcess ended = runLimited(words_, changes, options.limit);

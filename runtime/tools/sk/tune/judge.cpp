@@ -89,6 +89,28 @@ double errorOfSeries(const Series& series, const Series& truth, const Wanted& wa
   return worst;
 }
 
+/// The numbers that a program would read if nothing but its floats were inexact.
+Series roundedToFloats(const Series& series) {
+  Series rounded = series;
+  for (auto* const part : {&rounded.first, &rounded.last}) {
+    for (Values& values : *part) {
+      if (values.kind != Values::Kind::Double) continue;
+      Values floats{.kind = Values::Kind::Single};
+      for (std::size_t i = 0; i < values.count(); ++i) {
+        const auto number = static_cast<float>(values.at(i));
+        floats.bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+      }
+      values = std::move(floats);
+    }
+  }
+  return rounded;
+}
+
+bool areFloats(const Series& series) {
+  return std::ranges::any_of(readsOf(series),
+                             [](const Values* values) { return values->kind == Values::Kind::Single; });
+}
+
 }  // namespace
 
 Metric metricOf(const std::string& name) {
@@ -113,7 +135,8 @@ Wanted parseWanted(const std::string& text, Metric metric, double tolerance) {
   if (colon == std::string::npos) return wanted;
   const std::string number = rest.substr(colon + 1);
   const auto parsed = std::from_chars(number.data(), number.data() + number.size(), wanted.tolerance);
-  if (parsed.ec != std::errc() || parsed.ptr != number.data() + number.size() || !(wanted.tolerance > 0)) {
+  if (parsed.ec != std::errc() || parsed.ptr != number.data() + number.size() || !(wanted.tolerance > 0) ||
+      std::isinf(wanted.tolerance)) {
     throw std::runtime_error(fmt::format("'{}' is no tolerance above 0 (in --result {})", number, text));
   }
   return wanted;
@@ -172,6 +195,7 @@ Judge::Judge(const Process& base, const Process& truth, std::vector<Wanted> want
              double tolerance, std::span<const std::string> ignored)
     : base_(base), truth_(truth), wanted_(std::move(wanted)) {
   const std::vector<std::string> names = namesOf(base);
+  const bool areAll = wanted_.empty();
   for (const Wanted& each : wanted_) {
     if (seriesNamed(base, each.name) != nullptr) continue;
     const std::string_view nearest = sk::assemble::nearestWord(each.name, names);
@@ -179,10 +203,14 @@ Judge::Judge(const Process& base, const Process& truth, std::vector<Wanted> want
                                          nearest.empty() ? fmt::format("it reads {}", fmt::join(names, ", "))
                                                          : fmt::format("did you mean '{}'?", nearest)));
   }
-  if (!wanted_.empty()) return;
   for (const std::string& name : names) {
-    if (std::ranges::find(ignored, name) == ignored.end())
+    if (areAll && std::ranges::find(ignored, name) == ignored.end())
       wanted_.push_back({name, metric, tolerance, false});
+  }
+  for (const Wanted& each : wanted_) {
+    const Series* right = seriesNamed(truth, each.name);
+    ofRounding_.push_back(
+        right == nullptr ? 0 : errorOfSeries(roundedToFloats(*right), *right, each) / limitOf(each));
   }
 }
 
@@ -191,12 +219,13 @@ Verdict Judge::judge(const Process& run) const {
   const auto decide = [&](std::string text) {
     if (verdict.decision.empty()) verdict.decision = std::move(text);
   };
-  for (const Wanted& wanted : wanted_) {
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const Wanted& wanted = wanted_[i];
     const Series* own = seriesNamed(run, wanted.name);
     const Series* base = seriesNamed(base_, wanted.name);
     const Series* truth = seriesNamed(truth_, wanted.name);
     if (own == nullptr || truth == nullptr) {
-      verdict.errors.push_back({wanted.name, wanted.metric, infinity, infinity});
+      verdict.errors.push_back({wanted.name, wanted.metric, infinity, infinity, 0});
       decide(fmt::format("'{}' is never read", wanted.name));
       continue;
     }
@@ -210,7 +239,8 @@ Verdict Judge::judge(const Process& run) const {
     const double error = errorOfSeries(*own, *truth, wanted);
     const bool isPsnr = wanted.metric == Metric::Psnr;
     verdict.errors.push_back({wanted.name, wanted.metric, isPsnr ? -20 * std::log10(error) : error,
-                              std::isnan(error) ? infinity : error / limitOf(wanted)});
+                              std::isnan(error) ? infinity : error / limitOf(wanted),
+                              areFloats(*own) ? ofRounding_[i] : 0});
   }
   if (const ResultError* worst = verdict.worst()) verdict.score = worst->overTolerance;
   return verdict;

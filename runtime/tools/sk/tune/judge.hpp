@@ -47,6 +47,8 @@ struct ResultError {
   Metric metric;
   double error = 0;  ///< of the worst of its reads; for Psnr: dB
   double overTolerance = 0;  ///< at most 1 if it is exact enough
+  /// Of the right numbers, rounded to floats, over the tolerance, if the run has read floats: no choice is more exact. 0 otherwise.
+  double ofRounding = 0;
 };
 
 struct Verdict {
@@ -73,6 +75,7 @@ class Judge {
   const sk::results::Process& base_;
   const sk::results::Process& truth_;
   std::vector<Wanted> wanted_;
+  std::vector<double> ofRounding_;  ///< for each wanted one
 };
 
 /// Null if a run has no reads of this name.

@@ -35,6 +35,19 @@ Process processWith(const std::string& name, const Values& values, std::uint64_t
 
 }  // namespace
 
+TEST_CASE("what the rounding of a read to floats takes of the tolerance") {
+  const double third = 1.0 / 3;
+  const double rounding = std::fabs(static_cast<float>(third) - third);
+  const auto roundingOf = [&](Metric metric, double tolerance, const Values& read) {
+    const Process base = processWith("r", read), truth = processWith("r", doubles({third}));
+    return Judge(base, truth, {}, metric, tolerance, {}).judge(base).errors.front().ofRounding;
+  };
+  CHECK(roundingOf(Metric::Absolute, 1e-12, floats({1})) == Approx(rounding / 1e-12));
+  CHECK(roundingOf(Metric::Relative, 1e-12, floats({1})) == Approx(3 * rounding / 1e-12));
+  CHECK(roundingOf(Metric::Ulp, 1, floats({1})) <= 0.5);
+  CHECK(roundingOf(Metric::Absolute, 1e-12, doubles({1})) == 0);
+}
+
 TEST_CASE("metrics of a read") {
   const Values truth = doubles({3, 4, 0});
   CHECK(errorOf(floats({3, 4, 0.5F}), truth, Metric::L2, false) == Approx(0.1));

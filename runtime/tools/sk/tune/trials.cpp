@@ -30,8 +30,8 @@ json jsonOf(const Trial& trial) {
   for (const auto& [unit, value] : trial.setting)
     setting.push_back({unit.section, unit.name, unit.key, value});
   for (const ResultError& error : trial.verdict.errors) {
-    errors.push_back(
-        {error.name, nameOf(error.metric), numberOf(error.error), numberOf(error.overTolerance)});
+    errors.push_back({error.name, nameOf(error.metric), numberOf(error.error), numberOf(error.overTolerance),
+                      numberOf(error.ofRounding)});
   }
   return {{"setting", setting},
           {"failure", trial.failure},
@@ -50,8 +50,8 @@ Trial trialOf(const json& value) {
   trial.verdict.score = doubleOf(value.at("score"));
   trial.verdict.decision = value.at("decision");
   for (const json& error : value.at("errors")) {
-    trial.verdict.errors.push_back(
-        {error.at(0), metricOf(error.at(1)), doubleOf(error.at(2)), doubleOf(error.at(3))});
+    trial.verdict.errors.push_back({error.at(0), metricOf(error.at(1)), doubleOf(error.at(2)),
+                                    doubleOf(error.at(3)), error.size() > 4 ? doubleOf(error.at(4)) : 0});
   }
   trial.seconds = value.at("seconds").get<std::vector<double>>();
   trial.kernels = value.at("kernels").get<std::map<std::string, double>>();

@@ -17,10 +17,12 @@
 #include "application/program_options.hpp"
 #include "assemble/nearest_word.hpp"
 #include "commands.hpp"
+#include "number_checks.hpp"
 #include "support/cache_folder.hpp"
 #include "tune/baseline.hpp"
 #include "tune/report.hpp"
 #include "tune/truth.hpp"
+#include "tune/verify.hpp"
 
 namespace sk_tool {
 
@@ -106,36 +108,37 @@ std::string keyOf(const Options& options, const Judge& judge, const BaseFile& ba
   return fmt::format("{:016x}", sk::hashOf(key));
 }
 
-/// Fills in the verdicts. Returns why a configuration does not hold for the program with other arguments; "" if it does.
-std::string failureFor(Verification& verification, const Options& options,
-                       const std::vector<ResultFile>& files, const std::vector<Wanted>& wanted,
-                       const std::string& configuration) {
-  const Application application({"/bin/sh", "-c", verification.command}, files, options.anyStatus);
-  const RunResult asItIs = application.run({});
-  if (!asItIs.failure.empty()) return "as it is, the program " + asItIs.failure;
-  const Truth truth = truthOf(application, options.isFresh);
-  const Judge judge(asItIs.process, truth.process, wanted, metricOf(options.metric), options.tolerance, {});
-  verification.asItIs = judge.judge(asItIs.process);
-  const RunResult tuned = application.run({.environment = {{"SK_CONFIG", configuration}}});
-  if (!tuned.failure.empty()) return "the program " + tuned.failure;
-  verification.tuned = judge.judge(tuned.process);
-  if (!verification.tuned.isExact())
-    return fmt::format("{}; as it is: {}", describe(verification.tuned), describe(verification.asItIs));
-  if (!options.allowsDecisions && !verification.tuned.decision.empty())
-    return verification.tuned.decision + " (--allow-decisions lets it)";
-  return {};
+/// Runs what --verify names before the search.
+std::vector<OtherInputs> otherInputsOf(const Options& options, const std::vector<ResultFile>& files,
+                                       const std::vector<Wanted>& wanted, const Baseline& base) {
+  const Criteria criteria{.wanted = wanted,
+                          .metric = metricOf(options.metric),
+                          .tolerance = options.tolerance,
+                          .allowsDecisions = options.allowsDecisions};
+  std::vector<OtherInputs> others;
+  others.reserve(options.verify.size());
+  for (const std::string& command : options.verify) {
+    others.emplace_back(command, Application({"/bin/sh", "-c", command}, files, options.anyStatus), base,
+                        criteria, options.isFresh);
+  }
+  return others;
 }
 
-Verification verify(const std::string& command, const Options& options, const std::vector<ResultFile>& files,
-                    const std::string& configuration) {
-  Verification verification{.command = command, .asItIs = {}, .tuned = {}};
-  try {
-    const std::vector<Wanted> wanted = wantedOf(options, files);
-    verification.failure = failureFor(verification, options, files, wanted, configuration);
-  } catch (const std::runtime_error& error) {
-    verification.failure = error.what();
+/// Results whose tolerance no choice can reach, because the program gets them as floats.
+std::string textOfFloats(const Report& report) {
+  std::string text;
+  for (const ResultError& error : report.tuned->verdict.errors) {
+    const auto wanted = std::ranges::find(report.wanted, error.name, &Wanted::name);
+    if (!(error.ofRounding > 1) || wanted == report.wanted.end()) continue;
+    const std::string least =
+        error.metric == Metric::Psnr
+            ? fmt::format("{:.1f} dB at most", wanted->tolerance - 20 * std::log10(error.ofRounding))
+            : fmt::format("an error of {:.2g}", wanted->tolerance * error.ofRounding);
+    text += fmt::format(
+        "\n'{}' is read as floats: the right numbers have {} ({}) when they are rounded to floats",
+        error.name, least, nameOf(error.metric));
   }
-  return verification;
+  return text;
 }
 
 [[noreturn]] void failUnreached(const Report& report) {
@@ -145,6 +148,7 @@ Verification verify(const std::string& command, const Options& options, const st
                   found.isComplete ? "nothing reaches the tolerance"
                                    : "the budget has ended the search before anything reached the tolerance",
                   describe(report.tuned->verdict), describe(report.tuned->setting));
+  text += textOfFloats(report);
   for (const std::string& failed : found.failed) text += "\nnot possible: " + failed;
   for (const std::string& note : report.notes) text += "\nnote: " + note;
   if (!found.isComplete) text += "\na larger --budget, or --continue, may find more";
@@ -159,13 +163,12 @@ void write(const std::string& text, const std::string& file) {
 }
 
 /// Writes all that is asked for. Returns whether the setting holds on all inputs.
-bool finish(Report& report, const Options& options, const std::vector<ResultFile>& files) {
-  if (!options.verify.empty()) {
+bool finish(Report& report, const Options& options, const std::vector<OtherInputs>& others) {
+  if (!others.empty()) {
     const TemporaryFolder folder;
     const std::string file = (folder.path() / "tuned.toml").string();
     write(report.trials->fileOf(report.tuned->setting), file);
-    for (const std::string& command : options.verify)
-      report.verifications.push_back(verify(command, options, files, file));
+    for (const OtherInputs& each : others) report.verifications.push_back(each.verify(file));
   }
   const bool holds = std::ranges::all_of(report.verifications,
                                          [](const Verification& each) { return each.failure.empty(); });
@@ -229,7 +232,9 @@ BaseFile baseFile() {
 
 void tune(const Options& options) {
   const double budget = secondsOf(options.budget);
-  if (!options.chart.empty()) checkChartName(options.chart);
+  checkWritable(options.output);
+  if (!options.report.empty()) checkWritable(options.report);
+  if (!options.chart.empty()) checkChart(options.chart);
   const std::vector<ResultFile> files = filesOf(options);
   const std::vector<Wanted> wanted = wantedOf(options, files);
   const BaseFile file = baseFile();
@@ -242,6 +247,7 @@ void tune(const Options& options) {
   const Judge judge(base.process, truth.process, wanted, metricOf(options.metric), options.tolerance,
                     base.differing);
   checkFloats(application, judge.judge(base.process));
+  const std::vector<OtherInputs> others = otherInputsOf(options, files, wanted, base);
   const Choices choices = choicesOf(base.times);
   Trials trials(application, file, choices.facts, judge,
                 {.budget = std::chrono::duration<double>(budget),
@@ -262,7 +268,7 @@ void tune(const Options& options) {
   report.trials = &trials;
   search(trials, choices, found, report);
   if (!found.isReached) failUnreached(report);
-  if (finish(report, options, files)) return;
+  if (finish(report, options, others)) return;
   throw std::runtime_error(fmt::format(
       "the configuration does not hold on other inputs; it is kept as '{}.rejected'", options.output));
 }
@@ -276,7 +282,7 @@ void addTune(CLI::App& app) {
                                          "Finds the cheapest configuration file (SK_CONFIG) with which the "
                                          "results of a program are as exact as asked.");
   command->add_option("--tolerance", options->tolerance, "the largest error of each result, by the metric")
-      ->check(CLI::PositiveNumber);
+      ->check(aboveZero());
   command->add_option("--metric", options->metric,
                       "relative, absolute, ulp, l2 (default: the norm of the difference over that of the "
                       "right result) or psnr");
@@ -285,8 +291,7 @@ void addTune(CLI::App& app) {
                       "(default: all reads)");
   command->add_option("--result-file", options->files,
                       "a picture or .npy file that the program writes, and that counts");
-  command->add_option("--psnr", options->psnr, "the least PSNR of pictures, in dB")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--psnr", options->psnr, "the least PSNR of pictures, in dB")->check(aboveZero());
   command->add_option("--result-json", options->json,
                       "numbers in a JSON file that the program writes: FILE:NAME, run.json:energy");
   command->add_option("--verify", options->verify,
