@@ -46,8 +46,8 @@ runtime/src/assemble/reduce   sk/program.hpp sk/exact_digits.hpp sk/types.hpp sk
 runtime/mpi           sk support device call api native gl assemble
 runtime/text          sk text
 runtime/linear        sk text
-runtime/tools         sk support/cache_folder.hpp support/npz.hpp support/process_name.hpp native probe/probe.hpp assemble/nearest_word.hpp shadow
-runtime/tools/sk/tune sk support/cache_folder.hpp support/process_name.hpp assemble/nearest_word.hpp results/results_file.hpp toml/read_toml.hpp
+runtime/tools         sk support/cache_folder.hpp support/npz.hpp support/process_name.hpp text/real_option.hpp native probe/probe.hpp assemble/nearest_word.hpp shadow
+runtime/tools/sk/tune sk support/cache_folder.hpp support/process_name.hpp text/real_option.hpp assemble/nearest_word.hpp results/results_file.hpp toml/read_toml.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk

@@ -16,6 +16,7 @@
 #include "support/colormap.hpp"
 #include "support/image.hpp"
 #include "support/stopwatch.hpp"
+#include "text/real_option.hpp"
 
 namespace {
 
@@ -36,13 +37,13 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--size", s.size, "width and height of the generated picture (default: 512)")
       ->check(CLI::Range(1, 8192));
   cli.add_option("--sigma", s.sigma, "blur before the gradient, in pixels; 0 for none (default: 1.4)")
-      ->check(CLI::Range(0.0, 50.0));
+      ->check(sk::text::realFrom(0, 50), "0 to 50");
   CLI::Option* low = cli.add_option(
       "--low", s.low,
       "weakest edge that is kept where it touches a sure one, as a slope per pixel in linear light");
-  CLI::Option* high =
-      cli.add_option("--high", s.high, "weakest edge that is sure; with --low")->check(CLI::PositiveNumber);
-  low->needs(high)->check(CLI::PositiveNumber);
+  CLI::Option* high = cli.add_option("--high", s.high, "weakest edge that is sure; with --low")
+                          ->check(sk::text::aboveZero(), "above 0");
+  low->needs(high)->check(sk::text::aboveZero(), "above 0");
   high->needs(low);
   cli.add_option("--style", s.style,
                  "hue: the way that the light rises in colour; white: on black; ink: on paper (default: hue)")

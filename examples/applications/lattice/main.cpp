@@ -17,6 +17,7 @@
 #include "support/host_memory.hpp"
 #include "support/options.hpp"
 #include "support/ranks.hpp"
+#include "text/real_option.hpp"
 
 namespace {
 
@@ -29,7 +30,7 @@ struct Settings {
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--until-settled", s.overrides.settle,
                  "end when no field changes by more than this in a step")
-      ->check(CLI::Range(0.0, 1e12));
+      ->check(sk::text::realFrom(0, 1e12), "0 to 1e12");
   examples::addChoice(cli, "--precision", s.overrides.precision, examples::precisionNames,
                       "half, single, extended or double, in place of the scene's");
   cli.add_flag("--window", s.window, "show it in a window while it runs: space, s, f, +, -, r, q");
@@ -95,9 +96,10 @@ int main(int argc, char** argv) {
   examples::Application app(
       "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.",
       examples::joinRanks());
-  const examples::SceneOptions options(
-      app.options(), "what to run: a TOML file, as in examples/applications/lattice/scenes",
-      "cells, WxH or WxHxD, in place of the scene's", {1, 32768, 3}, "examples/applications/lattice/scenes/boiling.toml");
+  const examples::SceneOptions options(app.options(),
+                                       "what to run: a TOML file, as in examples/applications/lattice/scenes",
+                                       "cells, WxH or WxHxD, in place of the scene's", {1, 32768, 3},
+                                       "examples/applications/lattice/scenes/boiling.toml");
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "measure the numerics", examples::studies);
   const examples::RecordOptions record(app.options(), "means, extremes, Nusselt number ... while it runs");

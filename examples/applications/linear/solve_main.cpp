@@ -31,6 +31,7 @@
 #include "support/stopwatch.hpp"
 #include "support/text_file.hpp"
 #include "system.hpp"
+#include "text/real_option.hpp"
 
 namespace {
 
@@ -140,7 +141,7 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "how scalar products add: tree, compensated, extended or exact")
       ->capture_default_str();
   cli.add_option("--tolerance", s.solve.tolerance, "of ||b - A x|| / ||b||, in double precision")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(sk::text::realFrom(0, 1), "0 to 1")
       ->capture_default_str();
   cli.add_option("--most", s.solve.most, "the most iterations")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))

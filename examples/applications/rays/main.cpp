@@ -32,6 +32,7 @@
 #include "support/options.hpp"
 #include "support/ranks.hpp"
 #include "support/stopwatch.hpp"
+#include "text/real_option.hpp"
 
 namespace {
 
@@ -59,11 +60,11 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")
       ->check(CLI::Range(1, 1'000'000));
   cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")
-      ->check(CLI::Range(0.0, 1e7));
+      ->check(sk::text::realFrom(0, 1e7), "0 to 1e7");
   cli.add_option("--error", s.error,
                  "stop pixels whose 95 % interval is within this part of their brightness; 0: none; in place "
                  "of the scene's")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(sk::text::realFrom(0, 1), "0 to 1");
   cli.add_option(
       "--resume", s.resume,
       "go on from this file where it exists, and keep it up to date; to the bit as without a break");

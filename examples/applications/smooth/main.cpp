@@ -21,6 +21,7 @@
 #include "support/progress.hpp"
 #include "support/scene_file.hpp"
 #include "support/stopwatch.hpp"
+#include "text/real_option.hpp"
 
 namespace {
 
@@ -166,7 +167,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
   cli.add_option("--time-step", settings.timeStep,
                  "a squared length, in place of the scene's; 0.001 of a mesh")
-      ->check(CLI::Range(1e-12, 1e12));
+      ->check(sk::text::realFrom(1e-12, 1e12), "1e-12 to 1e12");
   cli.add_option("--layout", settings.layout, "of the matrix, as solve --layout takes it");
   cli.add_option("--precision", settings.precision,
                  "of the iterations: single, extended, double, or auto for what the matrix needs (default)");

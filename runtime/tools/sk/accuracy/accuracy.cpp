@@ -29,7 +29,7 @@
 #include "accuracy/programs.hpp"
 #include "accuracy/progress.hpp"
 #include "info/device_info.hpp"
-#include "number_checks.hpp"
+#include "text/real_option.hpp"
 
 namespace sk_tool {
 
@@ -392,7 +392,7 @@ void addAccuracy(CLI::App& app) {
       ->add_option("--tolerance", options->tolerance,
                    "Name the cheapest mode with a relative error of this or less")
       ->type_name("T")
-      ->check(zeroOrAbove());
+      ->check(sk::text::zeroOrAbove(), "0 or above");
   command->add_option("--json", options->jsonFile, "Also write JSON, one record a program, mode and data")
       ->type_name("FILE");
   command->add_option("--chart", options->chartFile, "Also draw error over time, by gnuplot, as .svg or .png")

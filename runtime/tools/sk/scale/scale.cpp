@@ -19,13 +19,13 @@
 #include "accuracy/child_process.hpp"
 #include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/ranges.hpp"
-#include "number_checks.hpp"
 #include "scale/model.hpp"
 #include "scale/quantities.hpp"
 #include "scale/rates.hpp"
 #include "scale/report.hpp"
 #include "sk/device.hpp"
 #include "sk/library.hpp"
+#include "text/real_option.hpp"
 
 namespace sk_tool {
 
@@ -393,7 +393,7 @@ void addScale(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--no-overlap", options->hasNoOverlap, "Kernels wait for every exchange");
   add("--efficiency", options->bar, "Below this, more GPUs do not pay (default: 0.7)", "E")
-      ->check(realIn(0, 1));
+      ->check(sk::text::realFrom(0, 1), "0 to 1");
   add("--size", options->size, "Elements of a measurement (default: 2^24 on a GPU, 2^22 on cores)", "N")
       ->check(CLI::Range(std::int64_t{1} << 14, std::int64_t{1} << 28));
   add("--device", options->device, "The device to measure on (as in 'sk accuracy')", "NAME");

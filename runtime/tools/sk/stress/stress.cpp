@@ -26,10 +26,10 @@
 #include "accuracy/child_process.hpp"
 #include "accuracy/progress.hpp"
 #include "application/program_options.hpp"
-#include "number_checks.hpp"
 #include "shadow/options.hpp"
 #include "stress/report.hpp"
 #include "support/process_name.hpp"
+#include "text/real_option.hpp"
 
 namespace sk_tool {
 
@@ -253,7 +253,7 @@ void addStress(CLI::App& app) {
       ->add_option(
           "--limit", options->limit,
           "the most seconds of a run (default: ten times those of the program as it is, and 15 more)")
-      ->check(realIn(1e-3, 1e7));
+      ->check(sk::text::realFrom(1e-3, 1e7), "0.001 to 1e7");
   command->add_option("--json", options->json, "also write all runs as JSON")->type_name("FILE");
   command->add_option("--keep", options->keep, "keep the page of each run's shadow in this folder")
       ->type_name("FOLDER");

@@ -17,8 +17,8 @@
 #include "application/program_options.hpp"
 #include "assemble/nearest_word.hpp"
 #include "commands.hpp"
-#include "number_checks.hpp"
 #include "support/cache_folder.hpp"
+#include "text/real_option.hpp"
 #include "tune/baseline.hpp"
 #include "tune/report.hpp"
 #include "tune/truth.hpp"
@@ -282,7 +282,7 @@ void addTune(CLI::App& app) {
                                          "Finds the cheapest configuration file (SK_CONFIG) with which the "
                                          "results of a program are as exact as asked.");
   command->add_option("--tolerance", options->tolerance, "the largest error of each result, by the metric")
-      ->check(aboveZero());
+      ->check(sk::text::aboveZero(), "above 0");
   command->add_option("--metric", options->metric,
                       "relative, absolute, ulp, l2 (default: the norm of the difference over that of the "
                       "right result) or psnr");
@@ -291,7 +291,8 @@ void addTune(CLI::App& app) {
                       "(default: all reads)");
   command->add_option("--result-file", options->files,
                       "a picture or .npy file that the program writes, and that counts");
-  command->add_option("--psnr", options->psnr, "the least PSNR of pictures, in dB")->check(aboveZero());
+  command->add_option("--psnr", options->psnr, "the least PSNR of pictures, in dB")
+      ->check(sk::text::aboveZero(), "above 0");
   command->add_option("--result-json", options->json,
                       "numbers in a JSON file that the program writes: FILE:NAME, run.json:energy");
   command->add_option("--verify", options->verify,
