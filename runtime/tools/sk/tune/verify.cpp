@@ -15,7 +15,8 @@ namespace {
 using sk::results::Process;
 
 /// Why a run with other inputs says nothing of the program: it calls none of its kernels, or lacks what it reads; "" if it serves.
-std::string mismatchOf(const Process& other, const Process& program, std::span<const Wanted> wanted) {
+std::string mismatchOf(const Process& other, const Baseline& base, std::span<const Wanted> wanted) {
+  const Process& program = base.process;
   const auto isCalled = [&](const sk::results::Kernel& kernel) {
     return std::ranges::find(other.kernels, kernel.name, &sk::results::Kernel::name) != other.kernels.end();
   };
@@ -23,8 +24,9 @@ std::string mismatchOf(const Process& other, const Process& program, std::span<c
     return fmt::format("calls no kernel of the program, such as {}", program.kernels.front().name);
   std::vector<std::string> names;
   for (const Wanted& each : wanted) names.push_back(each.name);
-  if (wanted.empty()) {
-    for (const sk::results::Series& series : program.series) names.push_back(series.name);
+  for (const sk::results::Series& series : program.series) {
+    const bool isIgnored = std::ranges::find(base.differing, series.name) != base.differing.end();
+    if (wanted.empty() && !isIgnored) names.push_back(series.name);
   }
   std::erase_if(names, [&](const std::string& name) { return seriesNamed(other, name) != nullptr; });
   if (names.empty()) return {};
@@ -47,8 +49,7 @@ OtherInputs::OtherInputs(const std::string& command, Application application, co
   };
   RunResult run = application_.run({});
   if (!run.failure.empty()) refuse(run.failure);
-  if (const std::string why = mismatchOf(run.process, base.process, criteria_.wanted); !why.empty())
-    refuse(why);
+  if (const std::string why = mismatchOf(run.process, base, criteria_.wanted); !why.empty()) refuse(why);
   asItIs_ = std::move(run.process);
   try {
     truth_ = truthOf(application_, isFresh).process;
