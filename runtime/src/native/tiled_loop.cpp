@@ -88,11 +88,11 @@ std::int64_t cacheOfTile() {
         "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
         text));
   }
-  // Twice the second level where the third has room for it: longer tiles save more than its slower answers cost.
-  constexpr std::int64_t usual = 1 << 20;
+  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
+  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
   const std::int64_t found = bytesOfCache(2);
-  const std::int64_t own = found > 0 ? found : usual;
-  return std::max(own * 5 / 8, std::min(2 * own, bytesOfCache(3) / (2 * native::mostThreads())));
+  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
+  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
 }
 
 /// The most states of its streams' arrays for which a call keeps its code.
