@@ -121,7 +121,8 @@ Extents TiledCall::distanceOf(std::size_t i) const {
       // other boundary modes bring indices inside, no farther from the element than they were, if that is inside, too
       const bool isWithin =
           given[d] >= needed[d] && (parameter.boundary != Boundary::Wrap || given[d] == extent_[d]);
-      if (!limits || !isWithin) continue;
+      // what is promised of another extent counts from a scaled index
+      if (!limits || !isWithin || (limits->isPromised && given[d] != needed[d])) continue;
       reach = std::max(limits->below, limits->above);
     } else if (given[d] != needed[d]) {
       continue;
