@@ -6,6 +6,7 @@ The files are what sk_race, sk_bench and torch_peer.py write; together they are 
 of our contenders, and which bars hold. A ratio here is a peer's time over ours: how many times as fast we are.
 """
 import argparse
+import datetime
 import json
 import os
 import re
@@ -25,6 +26,8 @@ def main():
                         help="write the tables between the marks <!-- bench NAME --> and <!-- /bench -->")
     parser.add_argument("--machine", metavar="NAME", default="",
                         help="of the document's tables, write those of this machine: <!-- bench NAME ... -->")
+    parser.add_argument("--date", metavar="YYYY-MM-DD", type=datetime.date.fromisoformat, default=datetime.date.today(),
+                        help="the day of the measurements, for the document (default: today)")
     arguments = parser.parse_args()
     found = results.read(arguments.files)
     print_tables(found)
@@ -40,7 +43,7 @@ def main():
         os.makedirs(arguments.chart, exist_ok=True)
         charts.draw(found, arguments.chart)
     if arguments.document:
-        update(arguments.document, arguments.machine, found, held)
+        update(arguments.document, arguments.machine, found, held, arguments.date)
     return 0
 
 
@@ -54,9 +57,9 @@ def print_tables(found):
         print(results.plain(head, rows))
 
 
-def update(path, machine, found, held):
+def update(path, machine, found, held, date):
     """Replaces what is between the marks; a mark names a table: `bars`, or `held`, those of them that were measured; `machine`, `steps`, `rates`, `views`, `loops`, or
-    one of our contenders, behind the name of another machine if that is given."""
+    one of our contenders, behind the name of another machine if that is given. Tables say when they were measured."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
 
@@ -84,6 +87,8 @@ def update(path, machine, found, held):
             body = results.markdown(*results.table_of(found, name, largest_only=True))
         else:
             return match.group(0)  # measured elsewhere
+        if name != "machine":
+            body += f"\nMeasured on {date}.\n"
         return f"<!-- bench {mark} -->\n{body}<!-- /bench -->"
 
     text, count = re.subn(r"<!-- bench ([\w -]+?) -->\n.*?<!-- /bench -->", replaced, text, flags=re.S)

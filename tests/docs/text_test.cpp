@@ -78,6 +78,27 @@ TEST_CASE("sources that documents name are there", "[text]") {
   }
 }
 
+TEST_CASE("tables of benchmarks say when they were measured", "[text]") {
+  const std::string begin = "<!-- bench ", end = "<!-- /bench -->";
+  const std::regex dated("Measured (on|by) 20[0-9]{2}-[01][0-9]-[0-3][0-9]\\.\n");
+  int tables = 0;
+  for (const docs::Document& document : docs::documents()) {
+    const std::string text = docs::readFile(fs::path(SK_DOCS_SOURCE) / document.name);
+    for (std::size_t at = text.find("\n" + begin); at != std::string::npos;
+         at = text.find("\n" + begin, at + 1)) {
+      const std::string mark = text.substr(at + 1, text.find("-->", at) - at - 1);
+      if (mark.ends_with("machine ")) continue;
+      const std::size_t last = text.find(end, at);
+      INFO(document.name << ": " << mark);
+      REQUIRE(last != std::string::npos);
+      const std::size_t line = text.rfind('\n', last - 2) + 1;
+      CHECK(std::regex_match(text.substr(line, last - line), dated));
+      ++tables;
+    }
+  }
+  CHECK(tables > 10);
+}
+
 TEST_CASE("docs/api.md lists what the public headers declare", "[text]") {
   const std::string index = docs::readFile(fs::path(SK_DOCS_SOURCE) / "docs/api.md");
   // Types, and members of the classes that programs use: at most two spaces in, and in no inner namespace.
