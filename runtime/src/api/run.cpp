@@ -80,6 +80,10 @@ class RecordedKernel final : public RecordedCall {
     prepare();
     return prepared_.get();
   }
+  std::string_view whyNotOnDevice() const override {
+    return "it reads or writes copies of its streams: of views with strides, of parts that overlap, or in "
+           "another precision";
+  }
   bool addUses(std::vector<StreamUse>& uses) const override {
     arguments_.addUses(uses);
     return true;

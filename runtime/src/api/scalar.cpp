@@ -114,7 +114,7 @@ class CheckedScalars final : public RecordedCall {
     call_->run();
     for (const ScalarPass::Output& output : outputs_) noteAllWritten(*output.stream);
   }
-  std::string_view name() const override { return "operations with scalars"; }
+  std::string_view name() const override { return operationsName; }
 
  private:
   std::unique_ptr<RecordedCall> call_;

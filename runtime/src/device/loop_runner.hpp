@@ -49,8 +49,9 @@ class RecordedCall {
 
   /// Of the kernel, or of what else it does.
   virtual std::string_view name() const { return "a step of the runtime"; }
-  /// The call as the device repeats it, where it has prepared that, which may happen here; else null.
+  /// The call as the device repeats it, where it has prepared that, which may happen here; else null, and whyNotOnDevice().
   virtual RecordedCall* onDevice() { return nullptr; }
+  virtual std::string_view whyNotOnDevice() const { return "it is no call of a kernel"; }
   /// Adds the streams that it uses, and returns true; or returns false: nothing is known.
   virtual bool addUses(std::vector<StreamUse>&) const { return false; }
 };

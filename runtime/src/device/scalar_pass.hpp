@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "sk/program.hpp"
@@ -29,6 +30,9 @@ struct ScalarStep {
   const program::Element* result;
   std::array<ScalarRef, 3> operands;
 };
+
+/// What RecordedCall::name() says of it.
+inline constexpr std::string_view operationsName = "operations with scalars";
 
 struct ScalarPass {
   struct Number {

@@ -219,6 +219,7 @@ class Evaluation {
 
 class NativeScalars final : public RecordedCall {
  public:
+  std::string_view name() const override { return operationsName; }
   NativeScalars(ScalarPass pass, RealType real) : pass_(std::move(pass)), real_(real) {}
 
   void run() override {

@@ -174,7 +174,7 @@ void TiledLoop::analyse(LoopState& loop) {
     Call& call = calls_.emplace_back();
     const auto* const run = dynamic_cast<const PreparedRun*>(recorded->onDevice());
     if (run == nullptr) {
-      call.whyNot = "it is none of a kernel's calls, or copies a stream for reading";
+      call.whyNot = recorded->whyNotOnDevice();
       continue;
     }
     call.tiled = std::make_unique<TiledCall>(*run);

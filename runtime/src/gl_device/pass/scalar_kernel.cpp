@@ -227,6 +227,7 @@ class PreparedScalars final : public RecordedCall {
   }
 
   void run() override { device_.runUnchecked(resolveCall(kernel_->kernel, arguments_, device_.limits)); }
+  std::string_view name() const override { return operationsName; }
 
  private:
   GlDevice& device_;
