@@ -45,14 +45,33 @@ class Cloth final : public OurTask {
 
  private:
   void once() override {
-    const cloth::Links links{clothCell, clothCell, clothDiagonal, clothStructural, clothShear, clothBend};
-    integrate_(false, false, false, false, 0, false, false, 0, {{0, clothFall, 0}, clothKeep}, links, {},
-               from_, moved_, sk::none, sk::none, sk::none, at_, by_);
-    for (int round = 0; round < clothRounds; ++round) {
-      relax_(true, true, true, false, 0, 0, links, at_, by_, sk::none, at_, by_);
-    }
-    collide_(true, true, false, false, clothThickness, at_, by_, spheres_, planes_, sk::none, sk::none, at_,
-             by_);
+    constexpr unsigned displacements = 0;  // cloth::Verlet
+    const cloth::Forces gravity{
+        .motion = cloth::Motion{{0, clothFall, 0}, clothKeep}, .windy = false, .air = cloth::Wind{}};
+    integrate_(netOf(false, from_), gravity, {.carried = false}, displacements, moved_, sk::none, sk::none,
+               at_, by_);
+    for (int round = 0; round < clothRounds; ++round)
+      relax_(netOf(true, at_), displacements, by_, sk::none, at_, by_);
+    collide_({.spheres = true,
+              .planes = true,
+              .capsules = false,
+              .boxes = false,
+              .thickness = clothThickness,
+              .sphere = spheres_,
+              .plane = planes_},
+             at_, by_, at_, by_);
+  }
+
+  /// All links, or none.
+  static cloth::Net netOf(bool linked, const sk::Stream<sk::float4>& points) {
+    return {
+        .structural = linked,
+        .shear = linked,
+        .bend = linked,
+        .tearing = false,
+        .law = 0U,  // cloth::Law: exact
+        .links = cloth::Links{clothCell, clothCell, clothDiagonal, clothStructural, clothShear, clothBend},
+        .p = points};
   }
 
   cloth::IntegrateKernel integrate_;

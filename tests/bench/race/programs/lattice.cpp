@@ -19,6 +19,11 @@ namespace {
 
 constexpr auto wrap = static_cast<std::uint32_t>(0), wall = static_cast<std::uint32_t>(2);  // lattice::Edge
 
+/// Walls that are held at these values.
+lattice::Sides wallsBetween(float bottom, float top) {
+  return {.left = wrap, .right = wrap, .bottom = wall, .top = wall, .walls = sk::float4{0, 0, bottom, top}};
+}
+
 /// Fields of a problem, and as many that a step writes.
 class LatticeTask : public OurTask {
  public:
@@ -54,9 +59,9 @@ class Boiling final : public LatticeTask {
  private:
   void once() override {
     const lattice::Boiling boiling{boilingPoint, boilingAlpha, boilingSigma, boilingLatent};
-    diffuse_(wrap, wrap, wall, wall, {0, 0, boilingBottom, boilingTop}, boilingSpread, now_[0], next_[0]);
+    diffuse_(wallsBetween(boilingBottom, boilingTop), boilingSpread, now_[0], next_[0]);
     rise_(true, 0, boiling, next_[0], warmed_);
-    exchange_(false, true, boiling, now_[0], warmed_, next_[0]);
+    exchange_({.x = false, .y = true}, boiling, now_[0], warmed_, next_[0]);
   }
 
   lattice::DiffuseKernel diffuse_;
@@ -77,8 +82,14 @@ class Convection final : public LatticeTask {
   void once() override {
     const lattice::Fluid fluid{flowCarry, flowViscosity, flowDamping, flowLift, flowRest, slope_};
     push_(false, true, false, fluid, now_[0], now_[1], now_[2], now_[3], next_[0], next_[1]);
-    convect_(wrap, wrap, wall, wall, {0, 0, 1, 0}, flowSpread, flowCarry, flowStiffness, now_[3], next_[0],
-             next_[1], now_[2], next_[3], next_[2]);
+    convect_(wallsBetween(1, 0),
+             {.spread = flowSpread,
+              .carry = flowCarry,
+              .stiffness = flowStiffness,
+              .t = now_[3],
+              .vx = next_[0],
+              .vy = next_[1]},
+             now_[2], next_[3], next_[2]);
   }
 
   lattice::PushKernel push_;

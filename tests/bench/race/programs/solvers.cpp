@@ -20,13 +20,14 @@
 #include "layout.hpp"
 #include "method.hpp"
 #include "multigrid.hpp"
+#include "operator.hpp"
+#include "operator_matrix.hpp"
 #include "our_task.hpp"
 #include "preconditioner.hpp"
 #include "programs/all.hpp"
 #include "solve.hpp"
 #include "stencil.hpp"
 #include "support/named.hpp"
-#include "system.hpp"
 
 namespace race {
 namespace {
@@ -156,10 +157,12 @@ class Cycled final : public OurTask {
  public:
   explicit Cycled(sk::Device& device)
       : OurTask(device),
-        system_(fmt::format("poisson:{0}x{0}x{0}", cycledExtent), {}),
-        matrix_(system_.makeMatrix(device, "stencil", plainSums, nullptr)),
+        a_(sk::linear::operatorOf(sk::linear::poisson({cycledExtent, cycledExtent, cycledExtent}))),
+        b_(a_.multiply(std::vector<double>(at(a_.size), 1.0))),
+        matrix_(sk::linear::makeMatrix(sk::linear::Space(device, sk::linear::shapeOf(a_)), a_, "stencil",
+                                       plainSums)),
         preconditioner_(examples::rowNamed(sk::linear::preconditionerKinds(), "multigrid", "preconditioner")
-                            .make(device, *matrix_, system_.matrix(), plainSums)),
+                            .make(device, *matrix_, a_, plainSums)),
         method_(examples::rowNamed(sk::linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, preconditioner_.get(), plainSums)) {}
 
@@ -167,14 +170,14 @@ class Cycled final : public OurTask {
 
  private:
   void once() override {
-    solution_ = sk::linear::solve(*method_, system_.matrix(), system_.rightHandSide(), plainSums,
-                                  {.tolerance = 1e-8, .every = 1});
+    solution_ = sk::linear::solve(*method_, a_, b_, plainSums, {.tolerance = 1e-8, .every = 1});
     if (solution_.outcome != sk::linear::Outcome::Converged)
       throw std::runtime_error(fmt::format("{}, with a residual of {:.2g}",
                                            sk::linear::nameOf(solution_.outcome), solution_.residualTrue));
   }
 
-  sk::linear::System system_;
+  sk::linear::Operator a_;
+  std::vector<double> b_;
   std::unique_ptr<sk::linear::Matrix> matrix_;
   std::unique_ptr<sk::linear::Preconditioner> preconditioner_;
   std::unique_ptr<sk::linear::Method> method_;
