@@ -37,6 +37,18 @@ RATIOS += [
     ("native", ["power-law matrix"], ["Eigen", "OpenMP"], 1.0, LARGE),
     ("native", ["conjugate gradients"], ["Eigen"], 4.0, 24),
 ]
+LOOPS = ["heat loop", "wave loop"]
+RATIOS += [
+    ("native", LOOPS, ["OpenMP"], 2.5, 24),
+    ("native", ["gray-scott loop"], ["OpenMP"], 2.0, 24),
+]
+# Our contender, programs, another way of ours, least ratio of its time over the first's, from which size on.
+OWN_RATIOS = [
+    ("native", LOOPS, "calls", 2.5, 24),
+    ("native", ["gray-scott loop"], "calls", 2.0, 24),
+]
+# Our contender, program, another way of ours, most that the first takes of its time, from which size on.
+OWN_COSTS = [("native", "chain of four", "in one kernel", 1.15, 24)]
 # Our contender, program, the program whose bytes a second it is measured by, least part of them, log2 of the size of both.
 BANDWIDTHS = [("native", "5-point matrix", "saxpy", 0.9, 24)]
 # Our contender, program, log2 of the size, what a run is so many of, most seconds for one.
@@ -66,6 +78,10 @@ def judge(found):
     rows.append(ratio_row(found, program, found.ours(), peers, least, LARGE))
     rows += [bandwidth_row(found, *bar) for bar in BANDWIDTHS if found.sizes(bar[1])]
     rows += [time_row(found, *bar) for bar in TIMES if found.sizes(bar[1])]
+    for ours, programs, way, least, smallest in OWN_RATIOS:
+        rows += [ratio_row(found, program, [ours], [f"{ours} {way}"], least, smallest) for program in programs
+                 if found.sizes(program)]
+    rows += [own_cost_row(found, *bar) for bar in OWN_COSTS if found.sizes(bar[1])]
     rows.append(compensated_row(found, "native"))
     if "PyTorch" in found.peers():
         rows.append(compensated_row(found, "compute"))
@@ -145,16 +161,24 @@ def time_row(found, ours, program, log2, parts, most):
 
 
 def compensated_row(found, ours):
-    name = f"a compensated sum's time over a plain one's, {ours}"
-    needed = f"at most {COMPENSATED}"
+    return cost_row(found, "sum", f"a compensated sum's time over a plain one's, {ours}", f"{ours} compensated", ours, COMPENSATED, LARGE)
+
+
+def own_cost_row(found, ours, program, way, most, smallest):
+    return cost_row(found, program, f"{program}: {ours}'s time over that {way}", ours, f"{ours} {way}", most, smallest)
+
+
+def cost_row(found, program, name, dear, cheap, most, smallest):
+    """The time of a contender over that of another one, at the size where that is most."""
+    needed = f"at most {most}"
     worst = None
-    for log2 in large_sizes(found, "sum"):
-        ratios = found.ratios(("sum", log2), ours, f"{ours} compensated")
+    for log2 in large_sizes(found, program, smallest):
+        ratios = found.ratios((program, log2), cheap, dear)
         if ratios and (worst is None or ratios[1] > worst[0]):
             worst = (ratios[1], f"{ratios[1]:.2f} ({ratios[0]:.2f}-{ratios[2]:.2f}) at 2^{log2}")
     if worst is None:
         return [name, needed, NOT_MEASURED, ""]
-    return [name, needed, worst[1], verdict(round(worst[0], 2) <= COMPENSATED)]
+    return [name, needed, worst[1], verdict(round(worst[0], 2) <= most)]
 
 
 def growth(found, program, contender):

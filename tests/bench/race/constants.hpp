@@ -26,6 +26,11 @@ constexpr float reactionKill = 0.06f;
 constexpr float reactionSpreadU = 0.16f;
 constexpr float reactionSpreadV = 0.08f;
 
+/// Steps of a run of the programs that repeat a step.
+constexpr int loopSteps = 100;
+/// Of the wave equation: the square of speed times time step over spacing; stable up to 1/2.
+constexpr float waveStiffness = 0.2f;
+
 // A step of the boiling lattice: temperatures, and how strongly things happen.
 constexpr float boilingPoint = 10, boilingBottom = 10.5f, boilingTop = 9.5f;
 constexpr float boilingSpread = 0.125f, boilingAlpha = 10, boilingSigma = 0.05f, boilingLatent = 0.1f;

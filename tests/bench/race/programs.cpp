@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "programs.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "constants.hpp"
 #include "programs/all.hpp"
@@ -30,6 +28,11 @@ Work bodiesWork(double n) { return {20 * n * n, 28 * n}; }
 Work gradientsWork(double n) {
   const double steps = gradientSteps(n);
   return {23 * n * steps, 32 * n * steps, steps};
+}
+/// Steps of a lattice. The bytes are those of step by step: who needs fewer seems to exceed the bandwidth of memory.
+template <int operations, int bytes>
+Work stepsWork(double n) {
+  return {operations * n * loopSteps, bytes * n * loopSteps, loopSteps};
 }
 Work fourierWork(double n) { return {5 * n * std::log2(n), 16 * n}; }
 
@@ -72,7 +75,7 @@ const std::vector<Program>& programs() {
        {12, 16, 20, 24},
        {22, 26, 28},
        each<6, 8>,
-       stencilProblem,
+       fieldProblem,
        heatCheck,
        heatOurs},
       {"9-point stencil",
@@ -80,7 +83,7 @@ const std::vector<Program>& programs() {
        {12, 16, 20, 24},
        {},
        each<11, 8>,
-       stencilProblem,
+       fieldProblem,
        binomialCheck,
        binomialOurs},
       // Operations depend on the picture.
@@ -145,6 +148,46 @@ const std::vector<Program>& programs() {
        reactionProblem,
        reactionCheck,
        reactionOurs},
+      {"heat loop",
+       "cells",
+       {16, 20, 24},
+       {},
+       stepsWork<6, 8>,
+       fieldProblem,
+       heatLoopCheck,
+       heatLoopOurs,
+       "calls",
+       heatLoopCalls},
+      {"gray-scott loop",
+       "cells",
+       {16, 20, 24},
+       {},
+       stepsWork<24, 16>,
+       reactionLoopProblem,
+       reactionLoopCheck,
+       reactionLoopOurs,
+       "calls",
+       reactionLoopCalls},
+      {"wave loop",
+       "cells",
+       {16, 20, 24},
+       {},
+       stepsWork<9, 12>,
+       fieldProblem,
+       waveLoopCheck,
+       waveLoopOurs,
+       "calls",
+       waveLoopCalls},
+      {"chain of four",
+       "floats",
+       {16, 20, 24},
+       {},
+       each<9, 8>,
+       fieldProblem,
+       chainCheck,
+       chainOurs,
+       "in one kernel",
+       chainInOneKernel},
       {"boiling step", "cells", {16, 20, 24}, {}, each<36, 8>, boilingProblem, boilingCheck, boilingOurs},
       {"convection step",
        "cells",
@@ -246,39 +289,6 @@ const std::vector<Program>& programs() {
        meshOtherOurs},
   };
   return table;
-}
-
-Problem grid(int log2) {
-  Problem p;
-  p.rows = std::int64_t{1} << (log2 / 2);
-  p.columns = std::int64_t{1} << (log2 - log2 / 2);
-  return p;
-}
-
-std::vector<float> numbers(std::int64_t n, std::uint32_t seed, float low, float high) {
-  std::vector<float> values(static_cast<std::size_t>(n));
-  std::uint64_t state = seed * 0x9e3779b97f4a7c15u + 1;
-  for (float& value : values) {
-    // Numerical Recipes' linear congruences; the upper 24 bits are the fraction
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    value = low + (high - low) * (static_cast<float>(state >> 40) * 0x1p-24f);
-  }
-  return values;
-}
-
-std::vector<std::int64_t> somePlaces(std::int64_t n, std::int64_t most) {
-  if (n <= most) {
-    std::vector<std::int64_t> all(static_cast<std::size_t>(n));
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-  }
-  std::vector<std::int64_t> some;
-  for (std::int64_t i = 0; i < most; ++i) {
-    // an even spread; multiples of n / most alone would all be in few columns of a grid
-    some.push_back(std::min(i * (n / most) + i % (n / most), n - 1));
-  }
-  some.back() = n - 1;
-  return some;
 }
 
 }  // namespace race

@@ -4,24 +4,16 @@
 // checked, and how the runtime does it. A program's file in programs/ holds its functions.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <sk/sk.hpp>
 
+#include "check.hpp"
 #include "contender.hpp"
+#include "problems.hpp"
 
 namespace race {
-
-/// What some or all numbers of the result must be.
-struct Check {
-  std::vector<std::int64_t> places;  ///< none: all, in order
-  std::vector<double> values;
-  double tolerance = 0;  ///< relative to the largest magnitude of `values`
-  double exempt =
-      0;  ///< the part of them that may be further off, where a rounding decides (Mandelbrot's border)
-};
 
 /// The work of a problem of n elements, as an algorithm that wastes nothing has it.
 struct Work {
@@ -49,14 +41,5 @@ struct Program {
 };
 
 const std::vector<Program>& programs();
-
-// Ingredients of problems.
-
-/// 2^log2 elements as rows of equal length, as square as may be.
-Problem grid(int log2);
-/// n numbers in [low, high), the same each time, that repeat late.
-std::vector<float> numbers(std::int64_t n, std::uint32_t seed, float low = 0, float high = 1);
-/// At most `most` of the places 0 to n-1, the first and the last among them.
-std::vector<std::int64_t> somePlaces(std::int64_t n, std::int64_t most = 4096);
 
 }  // namespace race

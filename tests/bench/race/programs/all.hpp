@@ -10,6 +10,10 @@ namespace race {
 #define RACE_OURS(name) \
   std::unique_ptr<Task> name##Ours(sk::Device& device, const sk::CallOptions& options, const Problem& problem)
 
+#define RACE_CALLS(name)                                                                \
+  std::unique_ptr<Task> name##Calls(sk::Device& device, const sk::CallOptions& options, \
+                                    const Problem& problem)
+
 Problem saxpyProblem(int log2);
 Check saxpyCheck(const Problem& problem);
 RACE_OURS(saxpy);
@@ -23,7 +27,6 @@ Problem dotProblem(int log2);
 Check dotCheck(const Problem& problem);
 RACE_OURS(dot);
 
-Problem stencilProblem(int log2);
 Check heatCheck(const Problem& problem);
 RACE_OURS(heat);
 Check binomialCheck(const Problem& problem);
@@ -85,6 +88,21 @@ RACE_OURS(residual);
 std::unique_ptr<Task> residualInTwoCalls(sk::Device& device, const sk::CallOptions& options,
                                          const Problem& problem);
 
+Check heatLoopCheck(const Problem& problem);
+RACE_OURS(heatLoop);
+RACE_CALLS(heatLoop);
+Problem reactionLoopProblem(int log2);
+Check reactionLoopCheck(const Problem& problem);
+RACE_OURS(reactionLoop);
+RACE_CALLS(reactionLoop);
+Check waveLoopCheck(const Problem& problem);
+RACE_OURS(waveLoop);
+RACE_CALLS(waveLoop);
+Check chainCheck(const Problem& problem);
+RACE_OURS(chain);
+std::unique_ptr<Task> chainInOneKernel(sk::Device& device, const sk::CallOptions& options,
+                                       const Problem& problem);
+
 Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);
@@ -115,5 +133,6 @@ RACE_OURS(mesh);
 RACE_OURS(meshOther);
 
 #undef RACE_OURS
+#undef RACE_CALLS
 
 }  // namespace race

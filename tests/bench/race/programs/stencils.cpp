@@ -61,12 +61,6 @@ Check check(const Problem& p, const Value& value) {
 
 }  // namespace
 
-Problem stencilProblem(int log2) {
-  Problem p = grid(log2);
-  p.floats = {numbers(p.size(), 1)};
-  return p;
-}
-
 Check heatCheck(const Problem& p) {
   return check(p, [](const auto& u) {
     return u(0, 0) + heatFlow * (u(0, -1) + u(0, 1) + u(-1, 0) + u(1, 0) - 4 * u(0, 0));

@@ -34,5 +34,9 @@ void residualOpenMp(const Problem& p, float* result);
 void sparseOpenMp(const Problem& p, float* y);
 std::unique_ptr<Task> diagonalsOpenMp(const Problem& p);
 std::unique_ptr<Task> gradientsOpenMp(const Problem& p);
+std::unique_ptr<Task> heatLoopOpenMp(const Problem& p);
+std::unique_ptr<Task> reactionLoopOpenMp(const Problem& p);
+std::unique_ptr<Task> waveLoopOpenMp(const Problem& p);
+std::unique_ptr<Task> chainOpenMp(const Problem& p);
 
 }  // namespace race

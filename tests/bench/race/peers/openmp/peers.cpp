@@ -37,4 +37,8 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   add("power-law matrix", asMany, sparseOpenMp);
   contenders.push_back({"5-point matrix", "OpenMP", diagonalsOpenMp});
   contenders.push_back({"conjugate gradients", "OpenMP", gradientsOpenMp});
+  contenders.push_back({"heat loop", "OpenMP", heatLoopOpenMp});
+  contenders.push_back({"gray-scott loop", "OpenMP", reactionLoopOpenMp});
+  contenders.push_back({"wave loop", "OpenMP", waveLoopOpenMp});
+  contenders.push_back({"chain of four", "OpenMP", chainOpenMp});
 }

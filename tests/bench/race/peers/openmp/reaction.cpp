@@ -8,29 +8,32 @@
 namespace race {
 namespace {
 
+using Field = std::vector<float>;
+
 /// u and v are fields of their own here, so that neighbours are neighbours in memory, too.
-class ReactionOpenMp final : public Task {
+class ReactionOpenMp : public Task {
  public:
-  explicit ReactionOpenMp(const Problem& p) : rows_(p.rows), columns_(p.columns) {
-    const auto n = static_cast<std::size_t>(p.size());
-    for (auto* field : {&startU_, &startV_, &u_, &v_, &nextU_, &nextV_}) field->resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      startU_[i] = p.floats[0][2 * i];
-      startV_[i] = p.floats[0][2 * i + 1];
+  void run(int times) final {
+    for (int i = 0; i < times; ++i) {
+      advance(startU_.data(), startV_.data());
+      for (int step = 1; step < steps_; ++step) advance(u_.data(), v_.data());
     }
   }
 
-  void run(int times) override {
-    for (int i = 0; i < times; ++i) {
-      advance(startU_.data(), startV_.data());
-      for (int step = 1; step < reactionSteps; ++step) advance(u_.data(), v_.data());
-    }
-  }
-  std::vector<float> result() override {
-    std::vector<float> parts;
-    for (std::size_t i = 0; i < u_.size(); ++i) parts.insert(parts.end(), {u_[i], v_[i]});
-    return parts;
-  }
+ protected:
+  ReactionOpenMp(const Problem& p, Field startU, Field startV, int steps)
+      : rows_(p.rows),
+        columns_(p.columns),
+        steps_(steps),
+        startU_(std::move(startU)),
+        startV_(std::move(startV)),
+        u_(startU_.size()),
+        v_(u_),
+        nextU_(u_),
+        nextV_(u_) {}
+
+  const Field& u() const { return u_; }
+  const Field& v() const { return v_; }
 
  private:
   void advance(const float* u, const float* v) {
@@ -58,11 +61,45 @@ class ReactionOpenMp final : public Task {
   }
 
   std::int64_t rows_, columns_;
-  std::vector<float> startU_, startV_, u_, v_, nextU_, nextV_;
+  int steps_;
+  Field startU_, startV_, u_, v_, nextU_, nextV_;
+};
+
+/// Every second number, from `first` on.
+Field everySecond(const Field& numbers, std::size_t first) {
+  Field some;
+  for (std::size_t i = first; i < numbers.size(); i += 2) some.push_back(numbers[i]);
+  return some;
+}
+
+/// u and v of each element in turn.
+class InTurn final : public ReactionOpenMp {
+ public:
+  explicit InTurn(const Problem& p)
+      : ReactionOpenMp(p, everySecond(p.floats[0], 0), everySecond(p.floats[0], 1), reactionSteps) {}
+
+  std::vector<float> result() override {
+    std::vector<float> parts;
+    for (std::size_t i = 0; i < u().size(); ++i) parts.insert(parts.end(), {u()[i], v()[i]});
+    return parts;
+  }
+};
+
+/// All of u, and then all of v.
+class OneByOne final : public ReactionOpenMp {
+ public:
+  explicit OneByOne(const Problem& p) : ReactionOpenMp(p, p.floats[0], p.floats[1], loopSteps) {}
+
+  std::vector<float> result() override {
+    std::vector<float> all = u();
+    all.insert(all.end(), v().begin(), v().end());
+    return all;
+  }
 };
 
 }  // namespace
 
-std::unique_ptr<Task> reactionOpenMp(const Problem& p) { return std::make_unique<ReactionOpenMp>(p); }
+std::unique_ptr<Task> reactionOpenMp(const Problem& p) { return std::make_unique<InTurn>(p); }
+std::unique_ptr<Task> reactionLoopOpenMp(const Problem& p) { return std::make_unique<OneByOne>(p); }
 
 }  // namespace race

@@ -1,48 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include "peers/openmp/stencil.hpp"
 
 #include "constants.hpp"
 #include "peers/openmp/all.hpp"
 
 namespace race {
-namespace {
 
-/// value(above, row, below, left, x, right) for each element of a grid, where left and right are columns. All but the
-/// borders is one loop without a condition, which vectorises.
-template <class Value>
-void stencil(const Problem& p, float* result, const Value& value) {
-  const float* u = p.floats[0].data();
-  const std::int64_t rows = p.rows, columns = p.columns;
-#pragma omp parallel for
-  for (std::int64_t y = 0; y < rows; ++y) {
-    const float* row = u + y * columns;
-    const float* above = u + std::max<std::int64_t>(y - 1, 0) * columns;
-    const float* below = u + std::min(y + 1, rows - 1) * columns;
-    float* r = result + y * columns;
-    const auto at = [&](std::int64_t left, std::int64_t x, std::int64_t right) {
-      return value(above, row, below, left, x, right);
-    };
-    r[0] = at(0, 0, std::min<std::int64_t>(1, columns - 1));
-#pragma omp simd
-    for (std::int64_t x = 1; x < columns - 1; ++x) r[x] = at(x - 1, x, x + 1);
-    r[columns - 1] = at(std::max<std::int64_t>(columns - 2, 0), columns - 1, columns - 1);
-  }
-}
-
-}  // namespace
-
-void heatOpenMp(const Problem& p, float* v) {
-  stencil(p, v, [](const float* above, const float* row, const float* below, auto left, auto x, auto right) {
-    return row[x] + heatFlow * (row[left] + row[right] + above[x] + below[x] - 4 * row[x]);
-  });
-}
+void heatOpenMp(const Problem& p, float* v) { heatStep(p.rows, p.columns, heatFlow, p.floats[0].data(), v); }
 
 void binomialOpenMp(const Problem& p, float* v) {
-  stencil(p, v, [](const float* above, const float* row, const float* below, auto left, auto x, auto right) {
-    const float corners = above[left] + above[right] + below[left] + below[right];
-    const float sides = above[x] + row[left] + row[right] + below[x];
-    return (corners + 2 * sides + 4 * row[x]) / 16;
-  });
+  stencil(p.rows, p.columns, p.floats[0].data(), v,
+          [](const float* above, const float* row, const float* below, auto left, auto x, auto right) {
+            const float corners = above[left] + above[right] + below[left] + below[right];
+            const float sides = above[x] + row[left] + row[right] + below[x];
+            return (corners + 2 * sides + 4 * row[x]) / 16;
+          });
 }
 
 }  // namespace race
