@@ -44,8 +44,8 @@ class StorageBuffer {
   /// What the host sees. What a program has written is there once a fence after finishMapped() is reached; what the host has
   /// written is there for all later commands.
   std::byte* bytes() const { return bytes_; }
-  /// Releases it if nothing has used it for a number of calls. Must be called once per call.
-  void trim();
+  /// Releases it if it is larger than `keptBytes` and nothing has used it for a number of calls. Must be called once per call.
+  void trim(std::size_t keptBytes);
 
  private:
   static constexpr int keptCalls = 16;

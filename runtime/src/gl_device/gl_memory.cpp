@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "gl_device/memory/kept_bytes.hpp"
 #include "sk/error.hpp"
 #include "support/checked_size.hpp"
 #include "support/host_limits.hpp"
@@ -35,7 +36,7 @@ GlMemory::GlMemory(GlContext& context, const std::unique_ptr<Trace>& trace)
     : context_(context),
       trace_(trace),
       framebuffers_(context.bound()),
-      pool_(context.bound(), framebuffers_) {
+      pool_(context.bound(), framebuffers_, keptBytesOn(context.handle(), context.capabilities())) {
   if (context.capabilities().isSoftware) keepHeap();
 }
 

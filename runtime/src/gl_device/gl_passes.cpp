@@ -2,12 +2,14 @@
 #include "gl_device/gl_passes.hpp"
 
 #include "call/check_call.hpp"
+#include "gl_device/memory/kept_bytes.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "support/checked_size.hpp"
 
 namespace sk {
 
-GlPasses::GlPasses(GlContext& context) : context_(context) {
+GlPasses::GlPasses(GlContext& context)
+    : context_(context), keptBytes_(keptBytesOn(context.handle(), context.capabilities())) {
   const gl::CurrentScope current(context.handle());
   vertexArray_ = gl::VertexArray(context.bound().deletions);
 }
@@ -17,7 +19,7 @@ GlPasses::~GlPasses() = default;
 void GlPasses::beginCall() {
   if (context_.isGuest()) hasDrawn_ = true;  // by the application
   for (const PassBuffer scratch : {PassBuffer::GroupStates, PassBuffer::TileResults, PassBuffer::SortedWords})
-    buffer(scratch).trim();
+    buffer(scratch).trim(keptBytes_);
 }
 
 void GlPasses::bind(PassBuffer which, std::size_t bytes, const program::Kernel& kernel,

@@ -51,7 +51,7 @@ class GlPasses {
   explicit GlPasses(GlContext& context);
   ~GlPasses();
 
-  /// Must be called when a call begins. Deletes buffers that have been idle for a number of calls.
+  /// Must be called when a call begins. Deletes large buffers that have been idle for a number of calls.
   void beginCall();
 
   /// Must be called before something is drawn.
@@ -103,6 +103,7 @@ class GlPasses {
   gl::StorageBuffer& buffer(PassBuffer which) { return buffers_[static_cast<std::size_t>(which)]; }
 
   GlContext& context_;
+  const std::size_t keptBytes_;  ///< of a buffer that is idle
   bool hasDrawn_ = false;
   gl::VertexArray vertexArray_;
   gl::Samplers samplers_{context_.bound().deletions};

@@ -21,7 +21,7 @@ namespace sk {
 
 struct RenderTarget {
   gl::Texture texture;
-  gl::Framebuffer framebuffer;   ///< created on first use
+  gl::Framebuffer framebuffer;  ///< created on first use
 
   gl::Framebuffer& framebufferIn(gl::BoundState& bound);
   assemble::TextureShape shape() const {
@@ -55,8 +55,9 @@ class FramebufferCache {
 
 class TexturePool {
  public:
-  TexturePool(gl::BoundState& bound, FramebufferCache& framebuffers)
-      : bound_(bound), framebuffers_(framebuffers) {}
+  /// Idle render targets of `keptBytes` in all stay however long they are idle (kept_bytes.hpp).
+  TexturePool(gl::BoundState& bound, FramebufferCache& framebuffers, std::size_t keptBytes)
+      : bound_(bound), framebuffers_(framebuffers), keptBytes_(keptBytes) {}
 
   /// Returns a render target with undefined texels, or an empty one if memory is exhausted. The context must
   /// be current.
@@ -85,7 +86,7 @@ class TexturePool {
   /// Must be called once per call.
   void trim() {
     ++clock_;
-    if (bytes_ > keptBytes) {
+    if (bytes_ > keptBytes_) {
       deleteOlderThan(clock_ - keptCalls);
     }
   }
@@ -103,7 +104,6 @@ class TexturePool {
     std::size_t acquired = 0;
   };
   static constexpr std::size_t smallBytes = std::size_t{1} << 20;
-  static constexpr std::size_t keptBytes = std::size_t{256} << 20;
   static constexpr std::int64_t keptCalls = 16;
 
   static std::uint64_t key(const gl::Format& format, const assemble::TextureShape& shape);
@@ -114,6 +114,7 @@ class TexturePool {
 
   gl::BoundState& bound_;
   FramebufferCache& framebuffers_;
+  const std::size_t keptBytes_;
   Reserve* reserve_ = nullptr;
   std::unordered_map<std::uint64_t, Bucket> buckets_;
   std::size_t bytes_ = 0;
