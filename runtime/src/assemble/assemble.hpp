@@ -62,6 +62,8 @@ struct Profile {
   bool checksLoops = false;
   /// Where GLSL has umulExtended, it may be called: with a literal 0xffffffff, LLVM 15 brings llvmpipe down.
   bool highProducts = true;
+  /// Compute programs may use subgroups of 32 invocations (glsl/subgroups.hpp), and 48 KiB of shared memory in a work group.
+  bool subgroups = false;
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

@@ -33,6 +33,20 @@ int largestTexture() {
   return std::min({integerOf(GL_MAX_TEXTURE_SIZE), viewport[0], viewport[1]});
 }
 
+/// Whether compute programs have subgroups of 32 invocations that are all full. GL promises that of no driver: others may run
+/// fewer invocations together than they report. NVIDIA's does not.
+bool hasFullSubgroups() {
+  if (!epoxy_has_gl_extension("GL_KHR_shader_subgroup") || !stringOf(GL_VENDOR).starts_with("NVIDIA"))
+    return false;
+  // the names of GL_KHR_shader_subgroup, which libepoxy may not know
+  constexpr GLenum subgroupSize = 0x9532, subgroupStages = 0x9533, subgroupFeatures = 0x9534;
+  constexpr GLint basic = 1, arithmetic = 4, ballot = 8, shuffle = 16, relativeShuffle = 32;
+  constexpr GLint features = basic | arithmetic | ballot | shuffle | relativeShuffle;
+  return integerOf(subgroupSize) == 32 && (integerOf(subgroupStages) & GL_COMPUTE_SHADER_BIT) != 0 &&
+         (integerOf(subgroupFeatures) & features) == features &&
+         integerOf(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) >= 48 << 10;
+}
+
 /// Whether compute programs can replace fragment programs of the same limits; uniform limits are then those
 /// of both.
 void readCompute(Capabilities& found) {
@@ -44,6 +58,7 @@ void readCompute(Capabilities& found) {
     GLint64 storageBytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBytes);
     found.storageBytes = storageBytes;
+    found.hasSubgroups = hasFullSubgroups();
     found.mapsStorage = found.version >= 44 || epoxy_has_gl_extension("GL_ARB_buffer_storage");
   }
 }

@@ -20,16 +20,18 @@ class BoundState;
 
 struct Capabilities {
   Api api = Api::Gl;
-  int version = 0;               ///< 10 * major + minor
+  int version = 0;  ///< 10 * major + minor
   bool isCompatibility = false;  ///< GL with the fixed-function pipeline
   RendererKind kind = RendererKind::Integrated;
   bool isSoftware = false;  ///< kind is Software
   bool blendsFloats = false;  ///< can blend 32-bit floats
-  bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
-  bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
+  bool hasDoubles = false;  ///< GLSL has double (GL_ARB_gpu_shader_fp64)
+  bool hasPrecise = false;  ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;  ///< can filter 32-bit floats linearly
   bool hasCompute = false;  ///< has compute programs of GLSL 4.30, within the limits below
   bool storesFromDraws = false;  ///< fragment programs write buffers at bindings 0 and 1
+  /// Compute programs have subgroups of 32 invocations with votes, sums and shuffles, and 48 KiB of shared memory in a work group.
+  bool hasSubgroups = false;
   bool mapsStorage = false;  ///< maps buffers while programs use them
   bool hasClipControl = false;  ///< the origin of y can be chosen
   bool hasLabels = false;  ///< has names of objects for debuggers (KHR_debug)

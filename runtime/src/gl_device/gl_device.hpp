@@ -87,6 +87,7 @@ class GlDevice final : public DeviceState {
   gl::BoundState& bound() { return context_.bound(); }
   GlMemory& memory() { return memory_; }
   GlPrograms& programs() { return programs_; }
+  const GlPrograms& programs() const { return programs_; }
   GlPasses& passes() { return passes_; }
 
   assemble::TextureLimits textureLimits() const {

@@ -34,6 +34,7 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   profile.checksLoops = capabilities.storesFromDraws &&
                         (capabilities.isSoftware || capabilities.kind == gl::RendererKind::Virtual);
   if (profile.checksLoops && profile.es) profile.version = "#version 310 es";
+  profile.subgroups = profile.stage == assemble::Stage::Compute && capabilities.hasSubgroups;
   return profile;
 }
 

@@ -252,14 +252,22 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
 TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles") {
   Programs programs("tiles");
   const Profile& profile = *findProfile("glsl430");
-  for (const RadixStep step :
-       {RadixStep::Count, RadixStep::Sum, RadixStep::Move, RadixStep::MoveFirst, RadixStep::MovePairs}) {
-    programs.add(profile, radixProgram(profile, step));
+  Profile withSubgroups = profile;
+  withSubgroups.subgroups = true;
+  constexpr RadixStep steps[] = {RadixStep::Count, RadixStep::CountPairs, RadixStep::Move,
+                                 RadixStep::MoveFirst, RadixStep::MovePairs};
+  constexpr RadixStorage storages[] = {
+      {}, {.writes = true}, {.reads = true}, {.reads = true, .writes = true}};
+  for (const Profile& one : {profile, withSubgroups}) {
+    for (const RadixStep step : steps) {
+      for (const RadixKeys keys : {RadixKeys::Words, RadixKeys::Floats}) {
+        for (const RadixStorage storage : storages) programs.add(one, radixProgram(one, step, keys, storage));
+      }
+    }
   }
-  for (const RadixStep step : {RadixStep::CountPairs, RadixStep::MovePairs, RadixStep::StorePairs})
-    programs.add(profile,
-                 radixProgram(profile, step, {.reads = true, .writes = step == RadixStep::MovePairs}));
-  programs.add(profile, radixProgram(profile, RadixStep::MoveFirst, {.writes = true}));
+  programs.add(profile, radixProgram(profile, RadixStep::Sum));
+  for (const RadixStep step : {RadixStep::Store, RadixStep::StorePairs})
+    programs.add(profile, radixProgram(profile, step, RadixKeys::Words, {.reads = true}));
   for (const std::string_view format :
        {"R32F", "RGBA32F", "RG16F", "R8UI", "RGBA32UI", "R8I", "RG32I", "R8"}) {
     for (const bool writesTexels : {true, false}) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "assemble/sort/radix_program.hpp"
 
+#include <initializer_list>
+
 #include <fmt/format.h>
 
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/glsl/subgroups.hpp"
 #include "glsl_text/group_sums.hpp"
 #include "glsl_text/radix_sort.hpp"
 
@@ -11,12 +14,24 @@ namespace sk::assemble {
 
 namespace {
 
-/// Whether the words that a step reads or writes in the buffer are pairs.
+/// The invocations of a work group, and the keys or counts of each.
+struct GroupShape {
+  std::int32_t invocations, run;
+};
+
+/// Of Sum, Store and StorePairs.
+constexpr GroupShape plainShape{256, radixSumTile / 256};
+
+GroupShape shapeOf(const Profile& profile) {
+  return profile.subgroups ? GroupShape{512, 12} : GroupShape{256, 16};
+}
+
 bool hasPairs(RadixStep step) {
   switch (step) {
     case RadixStep::Count:
     case RadixStep::Sum:
-    case RadixStep::Move: return false;
+    case RadixStep::Move:
+    case RadixStep::Store: return false;
     case RadixStep::CountPairs:
     case RadixStep::MoveFirst:
     case RadixStep::MovePairs:
@@ -25,8 +40,12 @@ bool hasPairs(RadixStep step) {
   return false;
 }
 
-std::string definitionsOf(RadixStep step, RadixStorage storage) {
+std::string definitions(bool usesSubgroups, const GroupShape& shape, RadixStep step, RadixKeys keys,
+                        RadixStorage storage) {
   std::string text;
+  if (usesSubgroups) text += subgroupExtensions() + "#define SK_SUBGROUPS\n";
+  text += fmt::format("#define SK_GROUP {}\n#define SK_RUN {}\n", shape.invocations, shape.run);
+  if (keys == RadixKeys::Floats) text += "#define SK_FLOATS\n";
   if (hasPairs(step)) text += "#define SK_PAIRS\n";
   if (step == RadixStep::MoveFirst) text += "#define SK_FIRST\n";
   if (storage.reads) text += "#define SK_FROM_BUFFER\n";
@@ -34,24 +53,38 @@ std::string definitionsOf(RadixStep step, RadixStorage storage) {
   return text;
 }
 
-std::string_view bodyOf(RadixStep step) {
-  switch (step) {
-    case RadixStep::Count:
-    case RadixStep::CountPairs: return library::countDigits;
-    case RadixStep::Sum: return library::sumCounts;
-    case RadixStep::Move:
-    case RadixStep::MoveFirst:
-    case RadixStep::MovePairs: return library::moveKeys;
-    case RadixStep::StorePairs: return library::storePairs;
-  }
-  return {};
-}
-
 }  // namespace
 
-std::string radixProgram(const Profile& profile, RadixStep step, RadixStorage storage) {
-  return fmt::format("{}\n{}{}{}{}{}", profile.version, definitionsOf(step, storage), library::radixHead,
-                     text(Function::Paired), groupSums(), bodyOf(step));
+std::int32_t radixTile(const Profile& profile) {
+  const GroupShape shape = shapeOf(profile);
+  return shape.invocations * shape.run;
+}
+
+std::string radixProgram(const Profile& profile, RadixStep step, RadixKeys keys, RadixStorage storage) {
+  const auto after = [&](bool usesSubgroups, const GroupShape& shape,
+                         std::initializer_list<std::string_view> texts) {
+    std::string program =
+        fmt::format("{}\n{}{}", profile.version, definitions(usesSubgroups, shape, step, keys, storage),
+                    library::radixHead);
+    for (const std::string_view text : texts) program += text;
+    return program;
+  };
+  switch (step) {
+    case RadixStep::Sum: return after(false, plainShape, {groupSums(), library::sumCounts});
+    case RadixStep::Store:
+    case RadixStep::StorePairs:
+      return after(false, plainShape, {text(Function::Paired), library::radixKeys, library::storeWords});
+    case RadixStep::Count:
+    case RadixStep::CountPairs:
+      return after(profile.subgroups, shapeOf(profile), {library::radixKeys, library::countDigits});
+    case RadixStep::Move:
+    case RadixStep::MoveFirst:
+    case RadixStep::MovePairs:
+      return after(
+          profile.subgroups, shapeOf(profile),
+          {profile.subgroups ? std::string_view() : groupSums(), library::radixKeys, library::moveKeys});
+  }
+  return {};
 }
 
 std::string_view groupSums() { return library::groupSums; }

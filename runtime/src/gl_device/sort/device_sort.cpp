@@ -31,8 +31,6 @@
 
 namespace sk {
 
-using assemble::RadixStep;
-using assemble::RadixStorage;
 using assemble::Rect;
 using assemble::RegionLayout;
 using program::Element;
@@ -53,7 +51,8 @@ class StreamSort {
         count_(static_cast<std::int32_t>(reordering.keys.shape.size())) {}
 
   std::int64_t run() {
-    WordSort sort(device_, count_, needsPlaces() ? WordSort::Of::KeysAndPlaces : WordSort::Of::Keys);
+    WordSort sort(device_, count_, needsPlaces() ? WordSort::Of::KeysAndPlaces : WordSort::Of::Keys,
+                  sortsBits() ? orderOfBits(scalar_, isDescending()) : WordOrder{});
     const std::int64_t first = sortWords(sort);
     std::deque<Moved> moved;
     for (const StreamRegion& region : reordering_.moved) moveTo(moved.emplace_back(device_, region), sort);
@@ -67,12 +66,10 @@ class StreamSort {
   bool isDescending() const { return reordering_.by == Reordering::By::DescendingKeys; }
   bool isKeys(const StreamRegion& region) const { return region.stream == reordering_.keys.stream; }
   bool isHalf() const { return reordering_.keys.stream->storage == Storage::Half; }
-  /// Whether sorted words give the keys back.
-  bool restoresKeys() const { return !reordering_.choosesFirst() && !program::is64Bit(scalar_) && !isHalf(); }
+  /// Whether the words are the bits of keys, which sorted words give back. They do not for halves, whose NaNs have fewer bits.
+  bool sortsBits() const { return !reordering_.choosesFirst() && !program::is64Bit(scalar_) && !isHalf(); }
   bool needsPlaces() const {
-    const auto isWithout = [&](const StreamRegion& region) {
-      return isKeys(region) && restoresKeys() && scalar_ != program::Scalar::Float;
-    };
+    const auto isWithout = [&](const StreamRegion& region) { return isKeys(region) && sortsBits(); };
     return reordering_.places != nullptr || program::is64Bit(scalar_) ||
            !std::ranges::all_of(reordering_.moved, isWithout);
   }
@@ -92,7 +89,7 @@ class StreamSort {
 
   void sortKeys(WordSort& sort) {
     if (!program::is64Bit(scalar_)) {
-      makeWords(wordKernel(scalar_, isDescending()), {&*sort.keys});
+      makeWords(sortsBits() ? bitsKernel(scalar_) : wordKernel(scalar_, isDescending()), {&*sort.keys});
       return sort.sort();
     }
     WordTexture upper(device_, count_);
@@ -192,22 +189,14 @@ class StreamSort {
     for (std::size_t plane = 0; plane < planes.size(); ++plane) {
       RenderTarget* const targets[] = {&to[plane]};
       from.planes = planes.subspan(plane, 1);
-      if (isKeys(moved.region) && restoresKeys()) {
-        restoreKeys(from, domain, rects, targets, sort, rank);
+      if (isKeys(moved.region) && sortsBits()) {
+        const Operand operands[] = {shapedOperandOf(sort.pairs ? *sort.pairs : *sort.keys), {}};
+        runKernel(device_, restoreKernel(scalar_, sort.pairs.has_value()), operands, domain, rects, targets);
         continue;
       }
       const Operand operands[] = {shapedOperandOf(*sort.pairs), from, {}};
       runKernel(device_, moveKernel(fields[plane], rank), operands, domain, rects, targets);
     }
-  }
-
-  void restoreKeys(const Operand& keys, const RegionLayout& domain, std::span<const Rect> rects,
-                   std::span<RenderTarget* const> targets, WordSort& sort, int rank) {
-    const program::Kernel& kernel = restoreKernel(scalar_, isDescending(), sort.pairs.has_value(), rank);
-    std::vector<Operand> operands{shapedOperandOf(sort.pairs ? *sort.pairs : *sort.keys)};
-    if (scalar_ == program::Scalar::Float) operands.push_back(keys);
-    operands.emplace_back();
-    runKernel(device_, kernel, operands, domain, rects, targets);
   }
 
   /// Stores the places to a stream of the keys' shape, which holds nothing yet.
@@ -410,23 +399,27 @@ const Kernel& upperWordKernel() {
               {input("k", sortWordPairs()), gather("x", sortWords(), 1), output("r", sortWordPairs())});
 }
 
-const Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank) {
+WordOrder orderOfBits(program::Scalar keys, bool isDescending) {
+  const std::uint32_t inverted = isDescending ? 0xffffffffu : 0;
+  if (keys == program::Scalar::Float) return {assemble::RadixKeys::Floats, inverted};
+  const std::uint32_t sign = keys == program::Scalar::Int ? 0x80000000u : 0;
+  return {assemble::RadixKeys::Words, inverted ^ sign};
+}
+
+const Kernel& bitsKernel(program::Scalar keys) {
   const Element& element = elementOf(keys);
-  const std::string_view inverted = isDescending ? "~" : "";
-  if (keys != program::Scalar::Float) {
-    const Element& from = fromPairs ? sortWordPairs() : sortWords();
-    return kept(fmt::format("void sort_kernel({0} k, out {1} r) {{ r = {1}({2}k{3}{4}); }}\n", from.glsl,
-                            element.glsl, inverted, fromPairs ? ".x" : "",
-                            keys == program::Scalar::Int ? " ^ 0x80000000u" : ""),
-                {input("k", from), output("r", element)});
-  }
-  return kept(fmt::format("{}void sort_kernel(uvec2 k, out float r) {{\n"
-                          "  uint b = {}k.x;\n"
-                          "  b = (b >> 31) != 0u ? b & 0x7fffffffu : ~b;\n"
-                          "  r = k.x == 0xffffffffu || b == 0u ? {} : uintBitsToFloat(b);\n"
-                          "}}\n",
-                          indexFunction(rank), inverted, elementAt(rank)),
-              {input("k", sortWordPairs()), gather("x", element, rank), output("r", element)});
+  const std::string_view bits = keys == program::Scalar::Float ? "floatBitsToUint" : "uint";
+  return kept(fmt::format("void sort_kernel({} k, out uint r) {{ r = {}(k); }}\n", element.glsl, bits),
+              {input("k", element), output("r", sortWords())});
+}
+
+const Kernel& restoreKernel(program::Scalar keys, bool fromPairs) {
+  const Element& element = elementOf(keys);
+  const Element& from = fromPairs ? sortWordPairs() : sortWords();
+  const std::string_view key = keys == program::Scalar::Float ? "uintBitsToFloat" : element.glsl;
+  return kept(fmt::format("void sort_kernel({} k, out {} r) {{ r = {}(k{}); }}\n", from.glsl, element.glsl,
+                          key, fromPairs ? ".x" : ""),
+              {input("k", from), output("r", element)});
 }
 
 const Kernel& lastWordKernel(const Element& words) {

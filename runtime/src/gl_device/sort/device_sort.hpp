@@ -26,11 +26,12 @@ class SortPrograms {
  public:
   explicit SortPrograms(GlPrograms& owner) : owner_(owner) {}
   /// Throws sk::Error if the driver rejects it.
-  IntegerProgram& of(assemble::RadixStep step, assemble::RadixStorage storage = {});
+  IntegerProgram& of(assemble::RadixStep step, assemble::RadixKeys keys, assemble::RadixStorage storage);
 
  private:
   GlPrograms& owner_;
-  std::array<std::unique_ptr<IntegerProgram>, 4 * assemble::radixSteps> programs_;  ///< for each RadixStorage
+  std::array<std::unique_ptr<IntegerProgram>, 4 * assemble::radixKeyTypes * assemble::radixSteps>
+      programs_;  ///< for each RadixStorage
 };
 
 /// Whether streams can be sorted by dispatches: the keys are stored as they are declared, or as halves, and temporaries
@@ -41,6 +42,14 @@ bool maySortByDispatches(const GlDevice& device, const Reordering& reordering);
 /// exhausted or the driver rejects a program; nothing has moved then. A DeviceScope must be open, and compute programs
 /// selected.
 std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering);
+
+/// How words compare: as unsigned numbers after an exclusive or with `flip`, or as the floats whose bits they are (RadixKeys).
+struct WordOrder {
+  assemble::RadixKeys keys = assemble::RadixKeys::Words;
+  std::uint32_t flip = 0;
+};
+/// The order of the bits of keys of 32 bits or fewer.
+WordOrder orderOfBits(program::Scalar keys, bool isDescending);
 
 /// The element of what is sorted: a word, or the pair of a word and the place where it came from.
 const program::Element& sortWords();
@@ -58,9 +67,10 @@ const program::Kernel& flagKernel(program::Scalar flags);
 const program::Kernel& moveKernel(const program::Field& field, int rank);
 /// ((word, place), upper words[]) -> the upper word at this place, and the place.
 const program::Kernel& upperWordKernel();
-/// (word) or ((word, place)) -> the int or uint key of a word; ((word, place), keys[]) -> the float key, which is taken from
-/// its place if it is a NaN or a zero, whose words do not say which. The keys have one dimension or, by rank 4, any.
-const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank);
+/// (key) -> its bits, for keys of 32 bits or fewer.
+const program::Kernel& bitsKernel(program::Scalar keys);
+/// (bits) or ((bits, place)) -> the key.
+const program::Kernel& restoreKernel(program::Scalar keys, bool fromPairs);
 /// () -> the largest word, or a pair of it, of the element sortWords() or sortWordPairs().
 const program::Kernel& lastWordKernel(const program::Element& words);
 /// ((word, place)) -> the place as an int.

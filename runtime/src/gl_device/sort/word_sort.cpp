@@ -8,6 +8,7 @@
 
 namespace sk {
 
+using assemble::RadixKeys;
 using assemble::RadixStep;
 using assemble::RadixStorage;
 using assemble::Rect;
@@ -18,39 +19,42 @@ std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; 
 
 }  // namespace
 
-WordSort::WordSort(GlDevice& device, std::int32_t count, Of of)
+WordSort::WordSort(GlDevice& device, std::int32_t count, Of of, const WordOrder& order)
     : device_(device),
+      order_(order),
       count_(count),
-      tiles_(divideUp(count, assemble::radixTile)),
+      tileSize_(assemble::radixTile(device.programs().computeProfile())),
+      tiles_(divideUp(count, tileSize_)),
       counts_(device, tiles_ * assemble::radixDigits),
       sums_(device, tiles_ * assemble::radixDigits),
-      totals_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
-      totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
+      totals_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixSumTile)),
+      totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixSumTile)),
       all_(device, 1) {
   if (of != Of::Pairs) keys.emplace(device, count);
   if (of != Of::Keys) pairs.emplace(device, count, sortWordPairs());
   if (!takesBuffer()) moved_.emplace(device, count, pairs ? sortWordPairs() : sortWords());
+  shift_ = (keys ? *keys : *pairs).shift();
 }
 
 bool WordSort::isPossible(const GlDevice& device, std::int64_t count) {
-  constexpr std::int64_t most = std::int64_t{assemble::radixTile} * assemble::radixTile *
-                                (assemble::radixTile / assemble::radixDigits);  // the totals are one tile
-  if (count > most) return false;
+  constexpr std::int64_t mostCounts =
+      std::int64_t{assemble::radixSumTile} * assemble::radixSumTile;  // their totals are one tile
+  const std::int64_t tiles = (count - 1) / assemble::radixTile(device.programs().computeProfile()) + 1;
+  if (tiles * assemble::radixDigits > mostCounts) return false;
   const auto isFlat = [&](std::int64_t words) {
     const auto texture = assemble::linearTexture(words, device.textureLimits());
     return texture && texture->layers == 0;
   };
-  const std::int64_t tiles = (count - 1) / assemble::radixTile + 1;
   return isFlat(count) && isFlat(tiles * assemble::radixDigits);
 }
 
 std::int64_t WordSort::divide() {
   sortBy(0, true);
-  storePairs();
+  storeWords();
   const TraceScope traced(device_.trace.get(), "transfer", "read number of elements");
   const std::int32_t ones = tiles_;  // the sum before the ones of the first tile
   const std::uint32_t inTile = read(sums_, ones);
-  const std::uint32_t before = read(totalSums_, ones / assemble::radixTile);
+  const std::uint32_t before = read(totalSums_, ones / assemble::radixSumTile);
   device_.throwPendingError();
   return std::int64_t{inTile} + before;
 }
@@ -59,66 +63,65 @@ void WordSort::sortByAll(bool fromKeys, int bits) {
   if (inBuffer_) bindBuffer();  // others may have used its binding meanwhile
   const int digits = std::max(1, (bits + 7) / 8);  // of 8 bits
   for (int digit = 0; digit < digits; ++digit) sortBy(digit, digit == 0 ? fromKeys : !pairs);
-  storePairs();
+  storeWords();
 }
 
-/// Takes memory for two arrays of pairs besides the textures; false if the device's buffers are too small, or if a loop
-/// records the commands, which it could not repeat. Single words are moved as fast from texture to texture.
+/// Takes memory for two arrays of words besides the textures; false if the device's buffers are too small, or if a loop
+/// records the commands, which it could not repeat.
 bool WordSort::takesBuffer() {
-  const std::int64_t bytes = std::int64_t{count_} * 16;
   inBuffer_ =
-      pairs && !device_.bound().isLogged() && bytes <= device_.capabilities.storageBytes && bindBuffer();
+      !device_.bound().isLogged() && bytesInBuffer() <= device_.capabilities.storageBytes && bindBuffer();
   return inBuffer_;
 }
 
 bool WordSort::bindBuffer() {
-  return device_.passes().bind(PassBuffer::SortedWords, static_cast<std::size_t>(count_) * 16);
+  return device_.passes().bind(PassBuffer::SortedWords, static_cast<std::size_t>(bytesInBuffer()));
 }
 
-/// Brings sorted pairs from the buffer to `pairs`.
-void WordSort::storePairs() {
+/// Brings sorted words from the buffer to their texture.
+void WordSort::storeWords() {
   if (!inBuffer_) return;
-  WordTexture& to = *pairs;
-  run(RadixStep::StorePairs, "store keys", {nullptr}, {&to},
-      {{"sk_keys_shift", to.shift()}, {"sk_length", count_}, {"sk_from", current_}}, tiles_);
+  run(pairs ? RadixStep::StorePairs : RadixStep::Store, "store words", {nullptr}, {pairs ? &*pairs : &*keys},
+      {{"sk_keys_shift", shift_}, {"sk_length", count_}, {"sk_from", current_}},
+      divideUp(count_, assemble::radixSumTile));
   isStored_ = false;
 }
 
 void WordSort::sortBy(int digit, bool readsKeys) {
-  const Uniform shift{"sk_digit", 8 * digit};
-  const Uniform keyShift{"sk_keys_shift", (keys ? *keys : *pairs).shift()},
-      countShift{"sk_counts_shift", counts_.shift()};
+  const Uniform shift{"sk_digit", 8 * digit}, flip{"sk_flip", static_cast<std::int32_t>(order_.flip)};
+  const Uniform keyShift{"sk_keys_shift", shift_}, countShift{"sk_counts_shift", counts_.shift()};
   const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
   const std::int32_t counts = tiles_ * assemble::radixDigits;
-  const std::int32_t groups = divideUp(counts, assemble::radixTile);
+  const std::int32_t groups = divideUp(counts, assemble::radixSumTile);
   WordTexture* const from = isStored_ ? nullptr : readsKeys ? &*keys : &*pairs;
-  const std::int32_t to = isStored_ && current_ == 0 ? count_ : 0;
-  run(isStored_ ? RadixStep::CountPairs : RadixStep::Count, "count digits", {from}, {&counts_},
-      {shift, keyShift, countShift, length, {"sk_from", current_}}, tiles_);
+  const Uniform fromNumber{"sk_from", current_}, toNumber{"sk_to", isStored_ && current_ == 0 ? count_ : 0};
+  run(readsKeys ? RadixStep::Count : RadixStep::CountPairs, "count digits", {from}, {&counts_},
+      {shift, flip, keyShift, countShift, length, fromNumber}, tiles_);
   run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
       {{"sk_length", counts}, countShift, totalShift}, groups);
   run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
       {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
   const RadixStep move = !pairs ? RadixStep::Move : readsKeys ? RadixStep::MoveFirst : RadixStep::MovePairs;
   run(move, "move keys", {from, &sums_, &totalSums_}, {inBuffer_ ? nullptr : &*moved_},
-      {shift, keyShift, countShift, totalShift, length, {"sk_from", current_}, {"sk_to", to}}, tiles_);
-  current_ = to;
+      {shift, flip, keyShift, countShift, totalShift, length, fromNumber, toNumber}, tiles_);
+  current_ = toNumber.value;
   isStored_ = inBuffer_;
   if (!inBuffer_) (pairs ? *pairs : *keys).swap(*moved_);
 }
 
-/// Dispatches a group for each tile. Words in the buffer take the place of the first that is read or written, which is null.
+/// Dispatches a group for each tile. Words in the buffer take the place of the first texture that is read or written, which is null.
 void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<WordTexture*> read,
                    std::initializer_list<WordTexture*> written, std::initializer_list<Uniform> uniforms,
                    std::int32_t tiles) {
   const RadixStorage storage{.reads = *read.begin() == nullptr, .writes = *written.begin() == nullptr};
-  IntegerProgram& program = device_.programs().ofSorts().of(step, storage);
+  IntegerProgram& program = device_.programs().ofSorts().of(step, order_.keys, storage);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
-  const std::int64_t bytes =
-      std::int64_t{tiles} * assemble::radixTile * 4 * static_cast<std::int64_t>(read.size());
+  const bool isPlain = step == RadixStep::Sum || step == RadixStep::Store || step == RadixStep::StorePairs;
+  const std::int32_t tile = isPlain ? assemble::radixSumTile : tileSize_;
+  const std::int64_t bytes = std::int64_t{tiles} * tile * 4 * static_cast<std::int64_t>(read.size());
   const PassScope traced(device_, {name, "sort", "dispatch"}, bytes, std::span<const Rect>(&groups, 1),
-                         std::size_t{assemble::radixTile} * 4);
+                         static_cast<std::size_t>(tile) * 4);
   device_.bound().program(program.program().name());
   int unit = 0;
   for (WordTexture* words : read) {
@@ -149,12 +152,15 @@ std::uint32_t WordSort::read(WordTexture& words, std::int32_t number) {
   return word;
 }
 
-IntegerProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
-  const std::size_t number =
-      4 * static_cast<std::size_t>(step) + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0);
-  std::unique_ptr<IntegerProgram>& known = programs_[number];
+IntegerProgram& SortPrograms::of(RadixStep step, RadixKeys keys, RadixStorage storage) {
+  const bool hasDigits = step != RadixStep::Sum && step != RadixStep::Store && step != RadixStep::StorePairs;
+  if (!hasDigits) keys = RadixKeys::Words;  // it does not compare them
+  const std::size_t ofStep =
+      assemble::radixKeyTypes * static_cast<std::size_t>(step) + static_cast<std::size_t>(keys);
+  std::unique_ptr<IntegerProgram>& known =
+      programs_[4 * ofStep + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0)];
   if (known) return *known;
-  known = owner_.build({{}, assemble::radixProgram(owner_.computeProfile(), step, storage)},
+  known = owner_.build({{}, assemble::radixProgram(owner_.computeProfile(), step, keys, storage)},
                        "a program of sk::sort");
   const gl::Program& linked = known->program();
   int unit = 0;

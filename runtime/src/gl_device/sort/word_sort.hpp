@@ -53,7 +53,7 @@ class WordSort {
     KeysAndPlaces,  ///< `keys`, to `pairs`
     Pairs,  ///< `pairs`
   };
-  WordSort(GlDevice& device, std::int32_t count, Of of);
+  WordSort(GlDevice& device, std::int32_t count, Of of, const WordOrder& order = {});
 
   /// Whether a device sorts this number of words: temporaries for all of them fit into textures without layers.
   static bool isPossible(const GlDevice& device, std::int64_t count);
@@ -72,9 +72,11 @@ class WordSort {
   };
 
   void sortByAll(bool fromKeys, int bits);
+  /// Of two arrays of words.
+  std::int64_t bytesInBuffer() const { return std::int64_t{count_} * (pairs ? 16 : 8); }
   bool takesBuffer();
   bool bindBuffer();
-  void storePairs();
+  void storeWords();
   void sortBy(int digit, bool readsKeys);
   void run(assemble::RadixStep step, std::string_view name, std::initializer_list<WordTexture*> read,
            std::initializer_list<WordTexture*> written, std::initializer_list<Uniform> uniforms,
@@ -82,7 +84,9 @@ class WordSort {
   std::uint32_t read(WordTexture& words, std::int32_t number);
 
   GlDevice& device_;
-  const std::int32_t count_, tiles_;
+  const WordOrder order_;
+  const std::int32_t count_, tileSize_, tiles_;
+  std::int32_t shift_ = 0;  ///< of the layout of words
   WordTexture counts_, sums_, totals_, totalSums_, all_;
 
  public:
@@ -91,8 +95,8 @@ class WordSort {
 
  private:
   std::optional<WordTexture> moved_;  ///< without a buffer
-  bool inBuffer_ = false;  ///< pairs lie in the buffer between two digits
-  bool isStored_ = false;  ///< the current pairs lie there, from number current_ on
+  bool inBuffer_ = false;  ///< words lie in the buffer between two digits
+  bool isStored_ = false;  ///< the current words lie there, from number current_ on
   std::int32_t current_ = 0;
 };
 
