@@ -11,6 +11,7 @@
 #include <memory>
 #include <random>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -178,6 +179,22 @@ TEST_CASE("more tiles than one sum holds are sorted") {
   const Data keys = dataOf(keysOf<std::int32_t>(n)), values = dataOf(iota(n));
   compare(devices, Algorithm::Sort, keys, &values, {n});
   compare(devices, Algorithm::Partition, keys, &values, {n});
+}
+
+TEST_CASE("words that do not fit into a buffer twice, or once, are sorted") {
+  constexpr std::int64_t n = 4099;
+  const Data keys = dataOf(keysOf<float>(n)), longs = dataOf(keysOf<double>(n)), values = dataOf(iota(n));
+  for (const std::int64_t bytes : {8 * n, 4 * n, std::int64_t{0}}) {  // pairs once, keys once, nothing
+    gl::OpenedContext opened = gl::openContext({"software", gl::Api::Gl});
+    opened.capabilities.storageBytes = bytes;
+    Devices devices;
+    devices.dispatching = std::make_unique<GlDevice>(
+        std::move(opened), DeviceChoices{.target = Target::Compute, .traits = {.sortsByDispatches = true}});
+    compare(devices, Algorithm::Sort, keys, nullptr, {n});
+    compare(devices, Algorithm::SortDescending, keys, &values, {n});
+    compare(devices, Algorithm::Sort, longs, &values, {n});
+    compare(devices, Algorithm::Unique, keys, &values, {n});
+  }
 }
 
 TEST_CASE("the host sorts where the counts of digits need a texture with layers") {

@@ -66,11 +66,12 @@ void WordSort::sortByAll(bool fromKeys, int bits) {
   storeWords();
 }
 
-/// Takes memory for two arrays of words besides the textures; false if the device's buffers are too small, or if a loop
-/// records the commands, which it could not repeat.
+/// Takes memory for two arrays of words besides the textures, or for one if the device's buffers are too small; false if they are
+/// too small even for that, or if a loop records the commands, which it could not repeat.
 bool WordSort::takesBuffer() {
-  inBuffer_ =
-      !device_.bound().isLogged() && bytesInBuffer() <= device_.capabilities.storageBytes && bindBuffer();
+  const auto isTooLarge = [&] { return bytesInBuffer() > device_.capabilities.storageBytes; };
+  alternates_ = isTooLarge();
+  inBuffer_ = !device_.bound().isLogged() && !isTooLarge() && bindBuffer();
   return inBuffer_;
 }
 
@@ -80,7 +81,7 @@ bool WordSort::bindBuffer() {
 
 /// Brings sorted words from the buffer to their texture.
 void WordSort::storeWords() {
-  if (!inBuffer_) return;
+  if (!isStored_) return;
   run(pairs ? RadixStep::StorePairs : RadixStep::Store, "store words", {nullptr}, {pairs ? &*pairs : &*keys},
       {{"sk_keys_shift", shift_}, {"sk_length", count_}, {"sk_from", current_}},
       divideUp(count_, assemble::radixSumTile));
@@ -94,7 +95,10 @@ void WordSort::sortBy(int digit, bool readsKeys) {
   const std::int32_t counts = tiles_ * assemble::radixDigits;
   const std::int32_t groups = divideUp(counts, assemble::radixSumTile);
   WordTexture* const from = isStored_ ? nullptr : readsKeys ? &*keys : &*pairs;
-  const Uniform fromNumber{"sk_from", current_}, toNumber{"sk_to", isStored_ && current_ == 0 ? count_ : 0};
+  const bool toBuffer = inBuffer_ && !(alternates_ && isStored_);
+  const bool toSecond = isStored_ && current_ == 0 && !alternates_;
+  const Uniform fromNumber{"sk_from", current_}, toNumber{"sk_to", toSecond ? count_ : 0};
+  WordTexture& words = pairs ? *pairs : *keys;
   run(readsKeys ? RadixStep::Count : RadixStep::CountPairs, "count digits", {from}, {&counts_},
       {shift, flip, keyShift, countShift, length, fromNumber}, tiles_);
   run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
@@ -102,11 +106,14 @@ void WordSort::sortBy(int digit, bool readsKeys) {
   run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
       {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
   const RadixStep move = !pairs ? RadixStep::Move : readsKeys ? RadixStep::MoveFirst : RadixStep::MovePairs;
-  run(move, "move keys", {from, &sums_, &totalSums_}, {inBuffer_ ? nullptr : &*moved_},
+  run(move, "move keys", {from, &sums_, &totalSums_},
+      {toBuffer    ? nullptr
+       : inBuffer_ ? &words
+                   : &*moved_},
       {shift, flip, keyShift, countShift, totalShift, length, fromNumber, toNumber}, tiles_);
   current_ = toNumber.value;
-  isStored_ = inBuffer_;
-  if (!inBuffer_) (pairs ? *pairs : *keys).swap(*moved_);
+  isStored_ = toBuffer;
+  if (!inBuffer_) words.swap(*moved_);
 }
 
 /// Dispatches a group for each tile. Words in the buffer take the place of the first texture that is read or written, which is null.

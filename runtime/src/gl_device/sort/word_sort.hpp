@@ -72,8 +72,10 @@ class WordSort {
   };
 
   void sortByAll(bool fromKeys, int bits);
-  /// Of two arrays of words.
-  std::int64_t bytesInBuffer() const { return std::int64_t{count_} * (pairs ? 16 : 8); }
+  std::int64_t bytesInBuffer() const {
+    const std::int64_t ofArray = std::int64_t{count_} * (pairs ? 8 : 4);
+    return alternates_ ? ofArray : 2 * ofArray;
+  }
   bool takesBuffer();
   bool bindBuffer();
   void storeWords();
@@ -95,7 +97,8 @@ class WordSort {
 
  private:
   std::optional<WordTexture> moved_;  ///< without a buffer
-  bool inBuffer_ = false;  ///< words lie in the buffer between two digits
+  bool inBuffer_ = false;  ///< words lie in the buffer between two digits,
+  bool alternates_ = false;  ///< or after every other one, and in their texture after the others
   bool isStored_ = false;  ///< the current words lie there, from number current_ on
   std::int32_t current_ = 0;
 };
