@@ -234,6 +234,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
                               guards(main) || guards(ours) || kernel.usesExactSums ||
                               intrinsics.useExactFloats || callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
+  program += extensions_;
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile);
   const bool hasLoopCheck = profile.checksLoops && (kernel.usesLoops || takesManyIterations_);

@@ -99,6 +99,8 @@ class ProgramText {
   /// For compute programs whose invocations store any number of texels: the statements that store the outputs' present
   /// values at a place, an ivec2, or an ivec3 in array textures. main() stores nothing by itself then.
   std::vector<std::string> storing(std::string_view place, bool isArray);
+  /// The #extension lines that the program needs besides those of its types; each ends its line.
+  void extensions(std::string_view lines) { extensions_ = lines; }
   /// Declares a buffer at binding 0, "buffer name {...}", with qualifiers.
   void buffer(std::string_view declaration);
   /// Declares a global variable.
@@ -188,6 +190,7 @@ class ProgramText {
   RelayedValues relayed_;
   std::vector<std::string> uniforms_;
   std::vector<Output> outputs_;
+  std::string extensions_;
   std::vector<std::string> variables_;
   std::vector<std::string> signatures_;
   std::uint32_t used_ = 0;  ///< bits of Function

@@ -101,7 +101,7 @@ struct ReduceVariant {
   bool domainLayered = false;
   ScanPass scan = ScanPass::None;
   ScanUnit unit = ScanUnit::Item;
-  /// ScanUnit::Tile: the only pass; its groups share a buffer at binding 0, which is 0 at first: a word, then two for each
+  /// ScanUnit::Tile: the only pass; its groups share a buffer at binding 0, which is 0 at first: two words, then two for each
   /// accumulator and tile.
   bool chained = false;
   /// Scans of the terms of an exact sum (sk/exact_digits.hpp). Items of partial results are combined with the identities,

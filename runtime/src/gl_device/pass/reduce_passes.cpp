@@ -383,7 +383,7 @@ void ReducePasses::bindChain(const ReducePass& pass) {
   const auto groups =
       static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
   const std::size_t bytes =
-      sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
+      sizeof(std::uint32_t) * (2 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
   device_.passes().bind(PassBuffer::TileResults, bytes, reduction_.fold, "the results of tiles");
   gl::StorageBuffer::clear(bytes);
 }

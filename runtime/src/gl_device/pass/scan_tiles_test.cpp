@@ -175,6 +175,59 @@ TEST_CASE("tiles have the same results as loops") {
     CHECK((scanned(*tiles, floatPairs, problem) == scannedOnHost(floatPairs, problem)));
 }
 
+/// Sums of one stream, whose items stay in the shared memory of a tile. It must outlive the devices.
+struct OneSum {
+  OneSum() {
+    reduction.fold = {.name = "sum",
+                      .entry = "sum",
+                      .declarations = {},
+                      .body = "void sum(uint x, inout uint s) { s += x; }\n",
+                      .parameters = parameters,
+                      .sources = {}};
+    reduction.combine = reduction.fold;
+    reduction.combineOperands = operands;
+    reduction.seeded = true;
+  }
+
+  const Element& element = ElementTraits<std::uint32_t>::element();
+  std::array<Parameter, 2> parameters{
+      {{.name = "x", .symbol = "x", .role = Role::Input, .element = &element},
+       {.name = "s", .symbol = "s", .role = Role::Accumulator, .element = &element, .identity = "0u"}}};
+  std::array<std::uint8_t, 2> operands{0, 1};
+  program::Reduction reduction{};
+};
+const OneSum oneSum;
+
+TEST_CASE("tiles that are folded by others than their groups keep their own items") {
+  for (const int patience : {-1, 1024}) {
+    const auto device = open({.target = Target::Compute,
+                              .traits = {.tilesScans = true, .chainsScans = true},
+                              .scanPatience = patience});
+    for (const std::int64_t count : {4097, 70001, 98304}) {
+      for (const bool isExclusive : {false, true}) {
+        CAPTURE(patience, count, isExclusive);
+        Words words = numbers(oneSum.element, count, 1), expected = words;
+        const auto from = device->createStream(oneSum.element, {count}, Storage::Single);
+        const auto to = device->createStream(oneSum.element, {count}, Storage::Single);
+        detail::write(detail::wholeRegion(from.get()), words.data(), words.size());
+        ScanOrder order;
+        order.isExclusive = isExclusive;
+        const std::array<Argument, 2> arguments{
+            {{.region = detail::wholeRegion(from.get())}, {.region = detail::wholeRegion(to.get())}}};
+        device->reduce(checkReduction(oneSum.reduction, arguments, {}, order));
+        detail::read(detail::wholeRegion(to.get()), words.data(), words.size());
+        std::uint32_t sum = 0;
+        for (std::uint32_t& word : expected) {
+          const std::uint32_t item = word;
+          word = isExclusive ? sum : sum + item;
+          sum += item;
+        }
+        CHECK((words == expected));
+      }
+    }
+  }
+}
+
 TEST_CASE("a scan of integers takes one pass") {
   const auto chained = open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}});
   chained->passCount.emplace();
