@@ -153,6 +153,7 @@ struct Task {
   bool pyramidLayered = false;  ///< List: the pyramid of a counted append output has layers
   bool scattersInAnyOrder = false;  ///< Owners, Groups: Order::Any
   bool pushesInAnyOrder = false;  ///< Groups: Order::Any, and all variable outputs have room
+  bool inOneRound = false;  ///< Groups: an invocation computes one texel, in place of GroupPlan::rounds
   auto operator<=>(const Task&) const = default;
 };
 

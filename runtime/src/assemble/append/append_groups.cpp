@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "assemble/append/append_passes.hpp"
+#include "assemble/append/group_functions.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/elements/planes.hpp"
+#include "assemble/glsl/subgroups.hpp"
 
 namespace sk::assemble {
 
@@ -20,92 +22,6 @@ using program::ScatterOp;
 
 namespace {
 
-constexpr std::string_view meeting = R"(
-void sk_meet() {
-  memoryBarrierShared();
-  barrier();
-}
-)";
-
-/// Replaces the counts of a tile's texels by the numbers of pushes before each; returns the number of all.
-constexpr std::string_view scanOfCounts = R"(
-uint sk_sum(uint a, uint b) {{ return min(a + b, {limit}u); }}
-
-uint sk_scan() {{
-  uint sk_t = gl_LocalInvocationIndex;
-  uint sk_all = 0u;
-  for (uint sk_i = sk_t * {rounds}u; sk_i < (sk_t + 1u) * {rounds}u; ++sk_i) {{
-    uint sk_one = sk_counts[sk_i];
-    sk_counts[sk_i] = sk_all;
-    sk_all = sk_sum(sk_all, sk_one);
-  }}
-  sk_sums[sk_t] = sk_all;
-  sk_meet();
-  for (uint sk_d = 1u; sk_d < {group}u; sk_d <<= 1) {{
-    uint sk_other = sk_t >= sk_d ? sk_sums[sk_t - sk_d] : 0u;
-    sk_meet();
-    sk_all = sk_sum(sk_all, sk_other);
-    sk_sums[sk_t] = sk_all;
-    sk_meet();
-  }}
-  uint sk_before = sk_t > 0u ? sk_sums[sk_t - 1u] : 0u;
-  for (uint sk_i = sk_t * {rounds}u; sk_i < (sk_t + 1u) * {rounds}u; ++sk_i) {{
-    sk_counts[sk_i] = sk_sum(sk_before, sk_counts[sk_i]);
-  }}
-  sk_meet();
-  return sk_sums[{group} - 1];
-}}
-)";
-
-/// Publishes a tile's number of pushes, and adds up those of the tiles before. A state is 0, or a number with a flag: 2^30
-/// if it is the tile's own, 2^31 if it includes all tiles before.
-constexpr std::string_view lookBack = R"(
-uint sk_look(uint sk_k, uint sk_own) {{
-  uint sk_t = gl_LocalInvocationIndex;
-  uint sk_mine = sk_tile * {outputs}u + sk_k;
-  if (sk_t == 0u && sk_tile > 0u) atomicExchange(sk_state[sk_mine], sk_own | 0x40000000u);
-  uint sk_before = 0u;
-  for (uint sk_end = sk_tile; sk_end > 0u; sk_end -= {group}u) {{
-    if (sk_t == 0u) {{
-      sk_look_low = 0u;
-      sk_look_high = 0u;
-      sk_look_nearest = {group}u;
-    }}
-    sk_meet();
-    uint sk_seen = 0u;
-    if (sk_t < sk_end) {{
-      do {{
-        sk_seen = sk_state[(sk_end - 1u - sk_t) * {outputs}u + sk_k];
-      }} while (sk_seen == 0u);
-      if (sk_seen >= 0x80000000u) atomicMin(sk_look_nearest, sk_t);
-    }}
-    sk_meet();
-    if (sk_t < sk_end && sk_t <= sk_look_nearest) {{
-      atomicAdd(sk_look_low, sk_seen & 0xffffu);
-      atomicAdd(sk_look_high, sk_seen >> 16 & 0x3fffu);
-    }}
-    sk_meet();
-    sk_before = sk_sum(sk_before, sk_look_high < 0x2000u ? min((sk_look_high << 16) + sk_look_low, {limit}u) : {limit}u);
-    bool sk_done = sk_look_nearest < {group}u;
-    sk_meet();
-    if (sk_done) break;
-  }}
-  if (sk_t == 0u) atomicExchange(sk_state[sk_mine], sk_sum(sk_before, sk_own) | 0x80000000u);
-  return sk_before;
-}}
-)";
-
-/// Takes places for a tile's pushes as groups come.
-constexpr std::string_view takePlace = R"(
-uint sk_take(uint sk_k, uint sk_own) {
-  if (gl_LocalInvocationIndex == 0u) sk_look_low = atomicAdd(sk_state[sk_k], sk_own);
-  sk_meet();
-  uint sk_place = sk_look_low;
-  sk_meet();
-  return sk_place;
-}
-)";
-
 /// Orders the bits of floats, -0 below 0. A NaN that is stored gives way to any value, and one that is given is ignored.
 constexpr std::string_view orderOfFloatBits = R"(
 bool sk_is_nan(uint b) { return (b & 0x7fffffffu) > 0x7f800000u; }
@@ -114,20 +30,19 @@ bool sk_below(uint a, uint b) { return sk_is_nan(b) || (!sk_is_nan(a) && sk_key(
 bool sk_above(uint a, uint b) { return sk_is_nan(b) || (!sk_is_nan(a) && sk_key(a) > sk_key(b)); }
 )";
 
-std::string filled(std::string_view text, int rounds, std::size_t outputs) {
-  return fmt::format(fmt::runtime(text), fmt::arg("limit", countLimit), fmt::arg("rounds", rounds),
-                     fmt::arg("group", appendGroup), fmt::arg("outputs", outputs));
-}
-
 }  // namespace
 
 std::string_view orderOfFloats() { return orderOfFloatBits; }
 
-GroupText::GroupText(ProgramText& program, DomainText& domain, const Kernel& kernel, const Variant& variant)
+GroupText::GroupText(ProgramText& program, DomainText& domain, const Profile& profile, const Kernel& kernel,
+                     const Variant& variant)
     : program_(program),
       domain_(domain),
       variant_(variant),
-      plan_(planGroups(kernel, variant.domainPacked, order())) {}
+      hasSubgroups_(profile.subgroups),
+      plan_(planGroups(kernel, variant.domainPacked, order())) {
+  if (variant.task.inOneRound) plan_.rounds = 1;
+}
 
 // ---- functions that the body calls ---------------------------------------------------------------
 
@@ -333,7 +248,7 @@ void GroupText::finish() {
   if (!pushed_.empty()) {
     declareStates();
     declareTotals();
-    text += meeting;
+    text += meetFunction();
   }
   program_.runFrom(text + (pushed_.empty() ? mainOfTiles() : mainOfPushes()));
 }
@@ -429,28 +344,32 @@ std::string GroupText::scanOfTiles() const {
   return text + "}\n";
 }
 
-/// Runs the kernel on all texels of the invocation, and sets the number of pushes of each, sk_own_r.
+/// Runs the kernel on all texels of the invocation, and sets the number of pushes of each, sk_own_r. If values are held, the runs
+/// are unconditional, on the last texel in place of those past the end, and store nothing there: a fetch within a branch would wait
+/// for the one before.
 std::string GroupText::runToCount() const {
   if (!plan_.isHeld) {
     return "  sk_storing = false;\n" + visits(forEach("    sk_at_{0} = 0u;\n"),
                                               forEach("    sk_own_{0}[sk_r] = min(sk_at_{0}, {4}u);\n"));
   }
-  std::string text = "  sk_storing = sk_rect.w != 0;\n" + forEach("  sk_bits_{0} = 0u;\n");
+  std::string text = forEach("  sk_bits_{0} = 0u;\n");
   for (int round = 0; round < plan_.rounds; ++round) {
     text += fmt::format(
-        "  if (sk_rect.z > {0} && sk_first + {1}u < uint(sk_rect.y)) {{\n"
-        "    uint sk_n = sk_first + {1}u;\n"
-        "    sk_pixel = ivec2(int(sk_n) % sk_rect.x, int(sk_n) / sk_rect.x);\n"
-        "    sk_slot = {2};\n"
-        "    sk_run();\n"
-        "  }}\n",
+        "  bool sk_is_inside{0} = sk_first + {1}u < uint(sk_rect.y);\n"
+        "  uint sk_n{0} = min(sk_first + {1}u, uint(sk_rect.y) - 1u);\n"
+        "  sk_pixel = ivec2(int(sk_n{0}) % sk_rect.x, int(sk_n{0}) / sk_rect.x);\n"
+        "  sk_storing = sk_is_inside{0} && sk_rect.w != 0;\n"
+        "  sk_slot = {2};\n"
+        "  sk_run();\n",
         round, round * appendGroup, round * elementsOfTexel());
   }
   for (int round = 0; round < plan_.rounds; ++round) {
+    const unsigned ofRound = ((1u << elementsOfTexel()) - 1) << (round * elementsOfTexel());
     text += ofPushed([&](const Pushed& pushed, std::size_t) {
-      return fmt::format("  sk_own_{0}[{1}] = uint(bitCount(sk_bits_{0} >> {2} & {3}u));\n",
-                         pushed.parameter->symbol, round, round * elementsOfTexel(),
-                         (1 << elementsOfTexel()) - 1);
+      return fmt::format(
+          "  if (!sk_is_inside{1}) sk_bits_{0} &= {3}u;\n"
+          "  sk_own_{0}[{1}] = uint(bitCount(sk_bits_{0} & {2}u));\n",
+          pushed.parameter->symbol, round, ofRound, ~ofRound);
     });
   }
   return text;
@@ -492,9 +411,9 @@ std::string GroupText::mainOfPushes() const {
   program_.variable("shared uint", fmt::format("sk_counts[{}]", plan_.rounds * appendGroup));
   program_.variable("shared uint", fmt::format("sk_sums[{}]", appendGroup));
   program_.variable("shared uint", "sk_tile, sk_look_low, sk_look_high, sk_look_nearest");
-  std::string text = filled(scanOfCounts, plan_.rounds, pushed_.size());
-  text +=
-      inAnyOrder ? std::string(takePlace) : filled(lookBack, plan_.rounds, pushed_.size()) + scanOfTiles();
+  if (hasSubgroups_) program_.extensions(subgroupExtensions());
+  std::string text = scanOfCounts(plan_.rounds, hasSubgroups_);
+  text += inAnyOrder ? std::string(takePlace()) : lookBack(pushed_.size(), hasSubgroups_) + scanOfTiles();
   text += "\nvoid main() {\n  uint sk_t = gl_LocalInvocationIndex;\n";
   text += fmt::format("  bool sk_looks = {};\n", inAnyOrder ? "false" : "sk_rect.w == 1");
   text +=

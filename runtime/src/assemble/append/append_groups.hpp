@@ -53,7 +53,8 @@ inline constexpr std::int64_t wordsBeforeStates = 2;
 /// Adds what a kernel's program needs for its append outputs, for Work::Append or Work::Owners.
 class GroupText {
  public:
-  GroupText(ProgramText& program, DomainText& domain, const program::Kernel& kernel, const Variant& variant);
+  GroupText(ProgramText& program, DomainText& domain, const Profile& profile, const program::Kernel& kernel,
+            const Variant& variant);
 
   /// Defines the function that the body calls.
   void define(const program::Parameter& appendOutput, const StreamAccess& access);
@@ -101,6 +102,7 @@ class GroupText {
   ProgramText& program_;
   DomainText& domain_;
   const Variant& variant_;
+  const bool hasSubgroups_;
   GroupPlan plan_;
   std::vector<Pushed> pushed_;
   std::size_t totals_ = 0;  ///< the number of the first output that holds a total

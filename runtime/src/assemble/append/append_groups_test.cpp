@@ -38,7 +38,7 @@ TEST_CASE("pushes go through shared memory if a tile's fit there") {
   const auto isPlan = [](const GroupPlan& plan, int rounds, bool isStaged, bool isHeld = false) {
     return plan.rounds == rounds && plan.isStaged == isStaged && plan.isHeld == isHeld;
   };
-  CHECK(isPlan(planFor(floats, 1, true), 2, true, true));
+  CHECK(isPlan(planFor(floats, 1, true), 4, true, true));
   CHECK(isPlan(planFor(floats, 1, false), 8, true, true));
   CHECK(isPlan(planFor(floats, 2, true), 2, true));
   CHECK(isPlan(planFor(fours, 1, false), 4, true, true));

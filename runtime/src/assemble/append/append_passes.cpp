@@ -167,8 +167,9 @@ namespace {
 
 /// Pushes of up to this many bytes in a tile go through shared memory.
 constexpr std::size_t stagedBytes = std::size_t{16} << 10;
-/// The most elements that an invocation computes. With more, it needs more registers, and fewer groups run side by side.
-constexpr int mostOfInvocation = 8;
+/// The most elements that an invocation computes, and the most that it holds in packed texels, all of which it fetches before it waits.
+/// With more, it needs more registers, and fewer groups run side by side.
+constexpr int mostOfInvocation = 8, mostHeldInTexels = 16;
 
 /// Bytes of a staged element.
 std::size_t bytesOf(const program::Element& element) {
@@ -205,7 +206,8 @@ GroupPlan planGroups(const Kernel& kernel, bool isPacked, Order order) {
     pushesOnce = pushesOnce && parameter.pushes <= 1;
     bytesPerElement += bytesOfEntry(parameter) * static_cast<std::size_t>(parameter.pushes);
   }
-  for (int rounds = most; rounds > 1; rounds /= 2) {
+  const int mostStaged = isPacked && pushesOnce ? mostHeldInTexels / elements : most;
+  for (int rounds = mostStaged; rounds > 1; rounds /= 2) {
     const std::size_t bytes = bytesPerElement * static_cast<std::size_t>(elements * rounds * appendGroup);
     if (bytes <= stagedBytes) return {rounds, bytes > 0, bytes > 0 && pushesOnce};
   }

@@ -275,6 +275,20 @@ TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles
         programs.add(profile, stagingProgram(profile, writesTexels, format, isLayered));
     }
   }
+  for (const Profile& one : {profile, withSubgroups}) {
+    for (const ScanPass scan : {ScanPass::Inclusive, ScanPass::Exclusive}) {
+      for (const std::uint8_t run : {1, 4})
+        programs.add(one, reduceProgram(one, samples::sum,
+                                        {.run = run, .scan = scan, .unit = ScanUnit::Tile, .chained = true}));
+    }
+    for (const bool inAnyOrder : {false, true}) {
+      for (const bool inOneRound : {false, true}) {
+        const Task task{.work = Work::Groups, .pushesInAnyOrder = inAnyOrder, .inOneRound = inOneRound};
+        const Variant variant{.task = task, .domain = Domain::Linear, .access = {{}, {}}};
+        programs.add(one, kernelProgram(one, samples::keepPositive, variant));
+      }
+    }
+  }
   for (const Reduction* reduction : {&samples::sum, &samples::firstHit}) {
     for (const ScanPass scan : {ScanPass::Folds, ScanPass::Inclusive, ScanPass::Exclusive}) {
       if (scan == ScanPass::Exclusive && reduction == &samples::firstHit) continue;  // it has no identity

@@ -117,7 +117,7 @@ class KernelText {
                 {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
                  variant.domainPacked, variant.domainPlaced},
                 variant.domainPlaced ? "sk_within" : "sk_index"),
-        groups_(program_, domain_, kernel_, variant) {
+        groups_(program_, domain_, profile, kernel_, variant) {
     if (reduction != nullptr) fold_.emplace(program_, *reduction, variant.domainPacked);
   }
 

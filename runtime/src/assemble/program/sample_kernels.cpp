@@ -60,6 +60,11 @@ constexpr Parameter saxpyParameters[] = {
     {.name = "r", .symbol = "r", .role = Role::Output, .element = &floatElement},
 };
 
+constexpr Parameter keepPositiveParameters[] = {
+    {.name = "x", .symbol = "x", .role = Role::Input, .element = &floatElement},
+    {.name = "r", .symbol = "r", .role = Role::VariableOutput, .element = &floatElement, .pushes = 1},
+};
+
 constexpr Parameter diffuseParameters[] = {
     {.name = "k", .symbol = "k", .role = Role::Uniform, .element = &floatElement},
     {.name = "u",
@@ -147,6 +152,17 @@ void saxpy(float a, float x, float y, out float r) {
 )",
                        .parameters = saxpyParameters,
                        .sources = sources};
+
+constexpr Kernel keepPositive{.name = "keepPositive",
+                              .entry = "keepPositive",
+                              .declarations = {},
+                              .body = R"(#line 3 1
+void keepPositive(float x) {
+  if (x > 0.0) sk_push_r(x);
+}
+)",
+                              .parameters = keepPositiveParameters,
+                              .sources = sources};
 
 constexpr Kernel diffuse{.name = "heat::diffuse",
                          .entry = "heat_diffuse",

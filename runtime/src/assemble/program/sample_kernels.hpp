@@ -18,6 +18,8 @@ extern const program::Element floatElement, float3Element, intElement, int3Eleme
 extern const program::Kernel saxpy;
 /// A five-point stencil.
 extern const program::Kernel diffuse;
+/// Pushes the positive elements of x to r.
+extern const program::Kernel keepPositive;
 /// A sum; an associative, noncommutative operation on structs; a fold with a separate combining kernel; and a
 /// fold of two inputs into two accumulators, with a uniform, a gather and indices.
 extern const program::Reduction sum, firstHit, countTrue, weigh;

@@ -161,6 +161,7 @@ class AppendDispatch {
              .scattersInAnyOrder = isAny && hasScatters(),
              .pushesInAnyOrder =
                  isAny && !lists_.empty() && plan().isHeld && std::ranges::all_of(lists_, hasLength)};
+    task_.inOneRound = plan().isHeld && rounds() < plan().rounds;
   }
 
   bool hasScatters() const {
@@ -175,11 +176,13 @@ class AppendDispatch {
     return assemble::planGroups(call_.kernel, layout_.whole.packed, order());
   }
 
-  /// Small domains are divided into enough tiles to occupy the device.
+  /// Small domains are divided into enough tiles to occupy the device. Programs that hold values have one round or all.
   std::int32_t rounds() const {
     constexpr std::int64_t enoughTiles = 2048;
     const std::int64_t perTile = texels() / (enoughTiles * assemble::appendGroup);
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(perTile, 1, plan().rounds));
+    const std::int32_t most = plan().rounds;
+    if (plan().isHeld) return 2 * perTile < most ? 1 : most;
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(perTile, 1, most));
   }
   std::int64_t texels() const { return call_.domain.size() / (layout_.whole.packed ? assemble::lanes : 1); }
   std::int32_t texelsInRow() const {
