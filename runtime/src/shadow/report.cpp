@@ -383,12 +383,17 @@ void addLost(Report& report) {
 }
 
 void addRest(Report& report, const ResultRecord* result) {
+  // the program may have done more after a report that is not its last
+  const std::string_view until = report.ended.starts_with("early") ? " up to this report" : "";
+  const auto addNothing = [&](std::string_view text, std::string_view why = "") {
+    report.verdicts.push_back({"nothing", "", fmt::format("{}{}{}", text, until, why), 0});
+  };
   if (report.calls == 0 && report.notes.empty()) {
-    report.verdicts.push_back({"nothing", "", "the program has called no kernel", 0});
+    addNothing("the program has called no kernel");
   } else if (report.followed == 0) {
-    report.verdicts.push_back({"nothing", "", "no call was compared; the notes say why", 0});
+    addNothing("no call was compared", "; the notes say why");
   } else if (report.results.empty()) {
-    report.verdicts.push_back({"nothing", "", "the program has read no result", 0});
+    addNothing("the program has read no result");
   } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
     const std::string digits =
         (result->largest > 0 ? "at least " : "") + fmt::format("{} survive", digitsOf(result->largest));
@@ -397,9 +402,9 @@ void addRest(Report& report, const ResultRecord* result) {
         report.followed == report.calls || report.options.every > 1 || !report.options.kernels.empty();
     report.verdicts.push_back(
         {"fine", "",
-         isWhole ? fmt::format("every result is right: {}", digits)
-                 : fmt::format("every result that was compared is right: {}; {} of {} calls were compared",
-                               digits, report.followed, report.calls),
+         isWhole ? fmt::format("every result{} is right: {}", until, digits)
+                 : fmt::format("every result that was compared{} is right: {}; {} of {} calls were compared",
+                               until, digits, report.followed, report.calls),
          0});
   }
 }
