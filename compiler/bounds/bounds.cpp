@@ -236,6 +236,17 @@ std::optional<Precision> declaredPrecision(const Kernel& kernel) {
   return std::nullopt;
 }
 
+/// Why the kernel cannot run in a precision; "" if it can.
+std::string whyNot(const Kernel& kernel, Precision precision) {
+  switch (precision) {
+    case Precision::Single: return "";
+    case Precision::Half: return kernel.variants.whyNotHalf;
+    case Precision::Extended:
+    case Precision::Double: break;
+  }
+  return kernel.variants.whyNotWide;
+}
+
 }  // namespace
 
 KernelBounds boundsOf(const Module& module, const Kernel& kernel, const Options& options) {
@@ -243,6 +254,10 @@ KernelBounds boundsOf(const Module& module, const Kernel& kernel, const Options&
   if (!options.isPrecisionGiven) own.precision = declaredPrecision(kernel).value_or(options.precision);
   KernelBounds result{
       qualifier(kernel.scope) + kernel.name, std::string(wordOf(kernel)), own.precision, {}, kernel.loc, {}};
+  if (const std::string why = whyNot(kernel, own.precision); own.hasVariants && !why.empty()) {
+    result.notBounded = fmt::format("it has no form in {} precision: {}", nameOf(own.precision), why);
+    return result;
+  }
   try {
     result.numbers = Analysis(module, kernel, own, graphOf(module, kernel, own)).run();
     if (result.numbers.empty()) result.notBounded = "it writes no floating-point number";

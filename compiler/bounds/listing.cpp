@@ -9,6 +9,16 @@
 #include "support/text.hpp"
 
 namespace skc::bounds {
+std::string_view nameOf(Precision precision) {
+  switch (precision) {
+    case Precision::Single: return "single";
+    case Precision::Half: return "half";
+    case Precision::Extended: return "extended";
+    case Precision::Double: return "double";
+  }
+  return "";
+}
+
 namespace {
 
 /// Three digits, rounded up: a bound stays one.
@@ -27,15 +37,6 @@ std::string end(double value, double largest) {
                               : std::string(value < 0 ? "-infinity" : "infinity");
 }
 
-std::string_view nameOf(Precision precision) {
-  switch (precision) {
-    case Precision::Single: return "single";
-    case Precision::Half: return "half";
-    case Precision::Extended: return "extended";
-    case Precision::Double: return "double";
-  }
-  return "";
-}
 std::string_view nameOf(Target target) { return target == Target::Native ? "native" : "fragment"; }
 
 class Writer {

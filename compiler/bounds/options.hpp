@@ -20,6 +20,8 @@ namespace skc::bounds {
 enum class Target : std::uint8_t { Native, Fragment };
 enum class Precision : std::uint8_t { Single, Half, Extended, Double };
 
+std::string_view nameOf(Precision precision);
+
 /// --range NAME=LOW:HIGH. The name is of a parameter, a member or a component of one: "x", "v.x", "ball.position".
 struct NamedRange {
   std::string name;
@@ -34,6 +36,8 @@ struct Options {
   Target target = Target::Native;
   Precision precision = Precision::Single;
   bool isPrecisionGiven = false;  ///< else a kernel's declaration chooses before `precision` does
+  bool hasVariants =
+      false;  ///< the module has the variants for other precisions, or says why a kernel has none
   double elements = 0;  ///< that a reduce or scan folds; 0 if unknown
   std::size_t effort = 20'000'000;  ///< operations that the search may evaluate, about, for each bound
 

@@ -71,9 +71,9 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
   result.expandsSelects = sk::assemble::findProfile(options.profile)->webgl;
   for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
   const bool isWhole = options.emit == Emit::Stubs || options.emit == Emit::Js || options.emit == Emit::Json;
-  // Bounds follow from the kernels as declared, in every precision.
+  // Bounds follow from the kernels as declared, in every precision; the variants say which precisions there are.
   const bool isBounds = options.emit == Emit::Bounds;
-  result.precisions = options.precision.empty() ? isWhole : options.precision != "single" && !isBounds;
+  result.precisions = options.precision.empty() ? isWhole || isBounds : options.precision != "single";
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
@@ -196,7 +196,9 @@ std::string planListings(const Options& options, const ir::Module& module) {
 }
 
 std::string boundsText(const Options& options, const ir::Module& module) {
-  const std::vector<bounds::KernelBounds> kernels = bounds::boundsOf(module, options.bounds);
+  bounds::Options ofBounds = options.bounds;
+  ofBounds.hasVariants = options.precision != "single";
+  const std::vector<bounds::KernelBounds> kernels = bounds::boundsOf(module, ofBounds);
   return options.boundsAsJson ? bounds::json(kernels, options.bounds)
                               : bounds::listing(kernels, options.bounds);
 }

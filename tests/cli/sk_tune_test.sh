@@ -69,7 +69,15 @@ json "
 assert all['raised'] == ['tuned::subtract'], all['raised']
 assert tuned['tuned::subtract', 'precision'] == 'double' and all['asItIs']['ofTolerance'] > 100, all
 without = [e['ofToleranceWithout'] for e in all['evidence'] if e['name'] == 'tuned::subtract']
-assert len(without) == 1 and without[0] > 100, without"
+assert len(without) == 1 and without[0] > 100, without
+# One ratio: of the times in the first lines, in the JSON, and of the only choice.
+import re
+text = open('tuned.toml').read()
+asItIs = float(re.search(r'as it is: (\S+) s', text)[1])
+seconds, ratio = map(float, re.search(r'tuned: (\S+) s, (\S+) of the time', text).groups())
+assert abs(seconds / asItIs - ratio) < 0.02 * ratio + 0.01 and abs(ratio - all['timeRatio']) < 0.006, (text, all['timeRatio'])
+saved = [e['saved'] for e in all['evidence']]
+assert len(tuned) > 1 or abs(1 - saved[0] - all['timeRatio']) < 1e-9, (saved, all['timeRatio'])"
 # Goes on from the state, which has all trials, so that only times are measured again.
 run 0 --tolerance 1e-6 --budget 100s --continue -- "$program" both 12000
 prints 'raised, and none of them can be left out: tuned::subtract'

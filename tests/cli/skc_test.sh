@@ -195,6 +195,14 @@ run 0 --emit=bounds --range v=0:1 --range v.y=2 product.sk
 prints 'r: 0 to 2, error at most 0'
 run 0 --emit=bounds --range v=1:2 --json --target=fragment product.sk
 prints '"target": "fragment"'
+# A kernel that cannot run in a precision has no bound there.
+echo 'kernel void turn(float2x2 m<>, float2 v<>, out float2 r<>) { r = m * v; }' >turn.sk
+for precision in extended double; do
+  run 0 --emit=bounds --range m=1:2 --range v=1:2 --target=fragment --precision=$precision turn.sk
+  prints "not bounded: it has no form in $precision precision: matrices are of floats"
+done
+run 0 --emit=bounds --range m=1:2 --range v=1:2 --precision=single turn.sk
+[[ $out != *'not bounded'* ]] || broken 'matrices of floats have bounds'
 refuses "'v' is not a range; write NAME=LOW:HIGH" --emit=bounds --range v product.sk
 for number in -1 0 nan inf x; do
   refuses "--elements: '$number' is no number of elements; give one such as 1000 or 1e6" --emit=bounds --elements $number product.sk

@@ -195,6 +195,18 @@ void runUnseen() {
   plate.u.read();
 }
 
+/// A wrong input that hardly counts in the result; `isSteep`: and what magnifies the error of the result.
+void hide(bool isSteep) {
+  Plate plate;
+  faults::spread(plate.u, plate.w);
+  faults::offset(1e-9F, plate.u, plate.w, plate.v);
+  if (isSteep) faults::slope(plate.v, plate.w);
+  (isSteep ? plate.w : plate.v).read();
+}
+
+void runHidden() { hide(false); }
+void runSteep() { hide(true); }
+
 /// All calls of one kernel are bad, and few of them are compared.
 void runSteady() {
   Plate plate;
@@ -566,7 +578,8 @@ const std::map<std::string, std::function<void()>> programs = {
     {"widened", runWidened},   {"watched", runWatched},   {"unseen", runUnseen},
     {"steady", runSteady},     {"sorted", runSorted},     {"ordered", runOrdered},
     {"unique", runUnique},     {"counted", runCounted},   {"throw", runThrow},
-    {"chdir", runChdir},       {"wide", runWide},         {"wait", runWait}};
+    {"chdir", runChdir},       {"wide", runWide},         {"wait", runWait},
+    {"hidden", runHidden},     {"steep", runSteep}};
 
 }  // namespace
 

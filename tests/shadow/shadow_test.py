@@ -103,9 +103,19 @@ total = next(r for r in report["results"] if r["name"] == "faults::total")
 check(total["reads"] == 2 and total["error"]["last"] > 1e-6, f"unseen: {total}")
 check(max(total["shares"], key=lambda each: each["share"])["kernel"] == "(calls that were not compared)", f"unseen: {total}")
 _, report = run("unseen", shadow="report.html,kernels=faults::smooth")
-check("calls that were not compared (every=, kernels=) add" in first(report)["text"], f"unseen: {report['verdicts']}")
+check("faults::advance or faults::gain or faults::ramp, which are not compared" in first(report)["text"], f"unseen: {report['verdicts']}")
 _, report = run("unseen", shadow="report.html,kernels=faults::smooth,kernels=faults::gain,kernels=faults::ramp")
-check("faults::advance, which is not compared, adds" in first(report)["text"], f"unseen: {report['verdicts']}")
+check("arises in, or is magnified by, faults::advance, which is not compared" in first(report)["text"], f"unseen: {report['verdicts']}")
+# A kernel of which no call is compared may add errors, magnify them or drop them: what passes through it is nobody else's.
+for name, kernels, unknown in (("hidden", [], None), ("steep", [], None), ("hidden", ["spread"], "offset"), ("hidden", ["offset"], None),
+                               ("steep", ["offset"], "slope"), ("steep", ["spread"], "slope or faults::offset"),
+                               ("steep", ["spread", "offset"], "slope"), ("steep", ["spread", "offset", "slope"], None)):
+    _, report = run(name, shadow="report.html" + "".join(f",kernels=faults::{kernel}" for kernel in kernels))
+    text, of_spread = first(report)["text"], next(k for k in report["kernels"] if k["name"] == "faults::spread")["share"]
+    expected = f"arises in, or is magnified by, faults::{unknown}, which" if unknown else "faults::offset adds"
+    check(expected in text and of_spread < 0.1, f"{name}, {kernels}: {of_spread} {report['verdicts']}")
+    if unknown:
+        check(text.endswith("too: kernels=faults::" + unknown.replace(" or ", ",kernels=")), f"{name}, {kernels}: {text}")
 for every in (1, 2, 4, 7):
     _, report = run("steady", shadow=f"report.html,every={every}")
     check(first(report)["kind"] == "error" and first(report)["kernel"] == "faults::advance", f"steady: {report['verdicts']}")
@@ -215,6 +225,9 @@ check(done.returncode == -6 and report["calls"] == 7 and report["ended"] == "ear
       f"throw: {done.returncode} {report['calls']} {report['ended']}")
 done, report = run("abort")
 check(report["calls"] > 0, f"abort: {report['calls']}")
+check(report["results"] or first(report)["text"] == "the program has read no result up to this report", f"abort: {first(report)}")
+calls = f"after {report['calls']} call" + ("" if report["calls"] == 1 else "s")
+check(report["ended"].endswith(calls), f"abort: {report['ended']}")
 done, report = run("chdir")
 check(report["ended"] == "normally" and done.stderr == "", f"chdir: {report['ended']} {done.stderr}")
 plain, _ = run("fine", shadow=None, SK_DEVICE="reference")

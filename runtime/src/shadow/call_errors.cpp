@@ -105,10 +105,16 @@ StreamErrors CallFollower::estimatedErrors(const Written& written) const {
   }
   const double inherited = known.amplification * inputs;
   after.relative = known.own + inherited;
-  if (after.relative > 0) {
+  const std::vector<double> weights = weightsOf(written);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!isKnown_) {
+    // The kernel may add anything, and may magnify errors of its inputs or drop them: no other kernel gets a share through it.
+    after.unseen = shadow::notCompared;
+    after.shares.addThrough(kernel_, 1);
+    for (std::size_t i = 0; i < read_.size(); ++i)
+      after.shares.addPath(read_[i].errors.shares, sum > 0 ? weights[i] / sum : 1);
+  } else if (after.relative > 0) {
     after.shares.add(kernel_, known.own);
-    const std::vector<double> weights = weightsOf(written);
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     for (std::size_t i = 0; i < read_.size() && sum > 0; ++i)
       after.shares.add(read_[i].errors.shares, inherited * weights[i] / sum);
     const double missing = after.relative - after.shares.sum();
@@ -127,6 +133,7 @@ void StreamErrors::measure(double measured) {
     shadow::Shares all;
     all.add(shares, part);
     all.add(unseen, 1 - part);
+    all.addPath(shares, 1 - part);
     shares = all;
     shares.normalize();
   }

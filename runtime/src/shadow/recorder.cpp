@@ -184,12 +184,13 @@ void Recorder::write(Ending ending) {
 namespace {
 
 std::string endedText(Recorder::Ending ending, std::int64_t calls) {
+  const std::string_view word = calls == 1 ? "call" : "calls";
   switch (ending) {
     case Recorder::Ending::Normal: return "normally";
-    case Recorder::Ending::Exception: return fmt::format("early: an exception after {} calls", calls);
+    case Recorder::Ending::Exception: return fmt::format("early: an exception after {} {}", calls, word);
     case Recorder::Ending::None: break;
   }
-  return fmt::format("early: the program had not ended after {} calls", calls);
+  return fmt::format("early: the program had not ended after {} {}", calls, word);
 }
 
 }  // namespace

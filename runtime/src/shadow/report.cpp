@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "assemble/nearest_word.hpp"
 
@@ -306,6 +307,29 @@ double shareOf(const ResultRecord& result, int kernel) {
   return found == result.shares.all().end() ? 0 : found->share;
 }
 
+/// Whose errors nobody knows: those of kernels of which no call was compared, and what has passed through them.
+std::string unknownText(const Report& report, const ResultRecord& result, double share,
+                        const std::string& survivors) {
+  constexpr double some = 0.1;
+  constexpr std::size_t most = 4;
+  std::vector<std::string> names;
+  for (const auto& [kernel, part] : result.shares.through()) {
+    if (kernel >= 0 && part >= some && names.size() < most) names.emplace_back(report.nameOf(kernel));
+  }
+  if (names.empty()) {
+    return fmt::format(
+        "calls that were not compared (every=, kernels=) add {:.0f} % of the error of what the program "
+        "reads: {}",
+        100 * share, survivors);
+  }
+  const bool isOne = names.size() == 1;
+  return fmt::format(
+      "{:.0f} % of the error of what the program reads arises in, or is magnified by, {}, which {} not "
+      "compared: {}; compare {}, too: kernels={}",
+      100 * share, fmt::join(names, " or "), isOne ? "is" : "are", survivors, isOne ? "it" : "them",
+      fmt::join(names, ",kernels="));
+}
+
 void addShares(Report& report, const ResultRecord* result) {
   const KernelRecord* worst = worstByShare(report);
   if (result == nullptr || !(result->largest > 0)) return;
@@ -317,7 +341,7 @@ void addShares(Report& report, const ResultRecord* result) {
         {"error", "", fmt::format("{} of the error of what the program reads: {}", whose, survivors), 0});
   };
   if (unknown > std::max(ofHost, ofWorst))
-    return add(fmt::format("calls that were not compared (every=, kernels=) add {:.0f} %", 100 * unknown));
+    return report.verdicts.push_back({"error", "", unknownText(report, *result, unknown, survivors), 0});
   if (ofHost > ofWorst || worst == nullptr)
     return add(fmt::format("what the host has written or copied brings {:.0f} %", 100 * ofHost));
   if (worst->followed == 0)
@@ -359,12 +383,17 @@ void addLost(Report& report) {
 }
 
 void addRest(Report& report, const ResultRecord* result) {
+  // the program may have done more after a report that is not its last
+  const std::string_view until = report.ended.starts_with("early") ? " up to this report" : "";
+  const auto addNothing = [&](std::string_view text, std::string_view why = "") {
+    report.verdicts.push_back({"nothing", "", fmt::format("{}{}{}", text, until, why), 0});
+  };
   if (report.calls == 0 && report.notes.empty()) {
-    report.verdicts.push_back({"nothing", "", "the program has called no kernel", 0});
+    addNothing("the program has called no kernel");
   } else if (report.followed == 0) {
-    report.verdicts.push_back({"nothing", "", "no call was compared; the notes say why", 0});
+    addNothing("no call was compared", "; the notes say why");
   } else if (report.results.empty()) {
-    report.verdicts.push_back({"nothing", "", "the program has read no result", 0});
+    addNothing("the program has read no result");
   } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
     const std::string digits =
         (result->largest > 0 ? "at least " : "") + fmt::format("{} survive", digitsOf(result->largest));
@@ -373,9 +402,9 @@ void addRest(Report& report, const ResultRecord* result) {
         report.followed == report.calls || report.options.every > 1 || !report.options.kernels.empty();
     report.verdicts.push_back(
         {"fine", "",
-         isWhole ? fmt::format("every result is right: {}", digits)
-                 : fmt::format("every result that was compared is right: {}; {} of {} calls were compared",
-                               digits, report.followed, report.calls),
+         isWhole ? fmt::format("every result{} is right: {}", until, digits)
+                 : fmt::format("every result that was compared{} is right: {}; {} of {} calls were compared",
+                               until, digits, report.followed, report.calls),
          0});
   }
 }

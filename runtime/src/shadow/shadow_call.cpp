@@ -121,6 +121,7 @@ void CallFollower::run() {
     shadow::KernelRecord& record = report->kernels[static_cast<std::size_t>(kernel_)];
     isMeasured_ = isFollowed && device_.isChosen(call_.kernel) &&
                   record.calls % device_.recorder().options().every == 0;
+    isKnown_ = record.followed > 0;
     ++record.calls;
     ++report->calls;
     if (record.calls == 1) record.choices = choicesText(device_.primary(), call_);

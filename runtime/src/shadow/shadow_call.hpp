@@ -129,6 +129,7 @@ class CallFollower {
   std::int64_t number_ = 0;
   int kernel_ = 0;  ///< its number in the report
   bool isMeasured_ = false, hasOwn_ = false;
+  bool isKnown_ = false;  ///< an earlier call of its kernel was compared
   bool isRunOnce_ =
       false;  ///< the device's inputs are those of the reference, so that one run on it shows both errors
   std::string ownProblem_;  ///< why the own error is not known

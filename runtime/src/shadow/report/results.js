@@ -95,7 +95,9 @@ function resultsSection() {
         {},
         report.calls > 0 && !report.followed
           ? "No call was followed, so that the errors of results are not known."
-          : "The program read no result back, so there is nothing that an error could reach.",
+          : (report.ended ?? "normally") === "normally"
+            ? "The program read no result back, so there is nothing that an error could reach."
+            : "The program had read no result back when this report was written; it may have read some later.",
       ),
     );
   const digitsScale = Math.max(finest, ...results.map(({ digits }) => toNumber(digits)).filter(Number.isFinite));

@@ -59,6 +59,11 @@ std::size_t Report::broken() const {
   return static_cast<std::size_t>(std::ranges::count_if(runs, [](const Run& run) { return run.isBroken(); }));
 }
 
+std::size_t Report::listed() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      runs, [](const Run& run) { return run.of.kind != Case::Kind::AsItIs || !run.findings.empty(); }));
+}
+
 void print(const Report& report, bool isAll) {
   printPlain(report);
   printRuns(report, fmt::format("breaks in {}:", cases(report.broken())), false,

@@ -17,6 +17,8 @@ struct Report {
 
   /// How many runs break the program where it must not break.
   std::size_t broken() const;
+  /// How many runs print() may list: all cases, and the program as it is if something was found.
+  std::size_t listed() const;
 };
 
 void print(const Report& report, bool isAll);

@@ -229,7 +229,7 @@ void runStress(const Options& options) {
   if (!options.json.empty()) writeJson(report, options.json);
   if (report.broken() > 0)
     throw std::runtime_error(
-        fmt::format("the program breaks in {} of {} cases", report.broken(), report.runs.size()));
+        fmt::format("the program breaks in {} of {} cases", report.broken(), report.listed()));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ class KernelSteps {
 
  private:
   void addPrecisions() {
-    if (!kernel_.hasFloats) return;
+    if (!kernel_.hasFloats) return leaveOut("precision", "it declares no floats, but doubles or integers");
     add("precision", "single", "single");
     if (kernel_.whyNotHalf.empty() && !kernel_.compensates) add("precision", "half", "single");
     if (kernel_.whyNotHalf.empty() && kernel_.compensates)

@@ -82,6 +82,14 @@ TEST_CASE("sums have accumulations in place of halves") {
   CHECK_FALSE(has(textsOf(choicesOf(processWith({kernel})).others), "sum: accumulate exact"));
 }
 
+TEST_CASE("kernels without floats are not tried, which is said") {
+  Kernel kernel = kernelNamed("doubles", 1);
+  kernel.hasFloats = kernel.mayContract = false;
+  const Choices choices = choicesOf(processWith({kernel}));
+  CHECK(choices.others.empty());
+  CHECK(has(choices.untried, "doubles: precision: it declares no floats, but doubles or integers"));
+}
+
 TEST_CASE("what a kernel lacks is left out with the reason") {
   Kernel kernel = kernelNamed("k", 1);
   kernel.whyNotHalf = "it shifts bits";

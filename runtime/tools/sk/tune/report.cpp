@@ -66,8 +66,8 @@ std::string summaryOf(const Report& report) {
   std::string text = fmt::format("results that count: {}", textOf(report.wanted));
   for (const std::string& name : report.ignored)
     text += fmt::format("\n  {} differs from run to run and does not count", name);
-  text += fmt::format("\nas it is: {:.3g} s, {}", report.base->median(), describe(report.base->verdict));
-  text += fmt::format("\ntuned: {:.3g} s, {:.2f} of the time, {}", report.tuned->median(), report.ratio,
+  text += fmt::format("\nas it is: {:.3g} s, {}", report.times.first, describe(report.base->verdict));
+  text += fmt::format("\ntuned: {:.3g} s, {:.2f} of the time, {}", report.times.second, report.times.ratio(),
                       describe(report.tuned->verdict));
   return text;
 }
@@ -197,7 +197,7 @@ void writeJson(const Report& report, const std::string& file) {
                     {"ignored", report.ignored},
                     {"asItIs", jsonIn(*report.base)},
                     {"tuned", jsonIn(*report.tuned)},
-                    {"timeRatio", report.ratio},
+                    {"timeRatio", report.times.ratio()},
                     {"raised", report.found->raised},
                     {"evidence", evidence},
                     {"complete", report.found->isComplete},
@@ -231,7 +231,8 @@ void drawTrials(const Report& report, const std::string& file) {
   for (const Trial* each : trials) {
     const bool isEnd = each == report.base || each == report.tuned;
     const char* const colour = isEnd ? "0xb5421b" : isPareto(*each, trials) ? "0x1b5e9b" : "0x999999";
-    fmt::format_to(std::back_inserter(script), "{} {} {} {}\n", each->median() / base,
+    fmt::format_to(std::back_inserter(script), "{} {} {} {}\n",
+                   each == report.tuned ? report.times.ratio() : each->median() / base,
                    std::log10(std::max(each->verdict.score, least / 10)), colour,
                    each == report.base    ? "\"as it is\""
                    : each == report.tuned ? "\"tuned\""

@@ -27,7 +27,7 @@ struct Report {
   std::vector<std::string> notes;
   const Trial* base = nullptr;
   const Trial* tuned = nullptr;
-  double ratio = 1;  ///< of the times, in turns
+  Comparison times = {};  ///< of the program as it is and tuned, in turns
   bool wasRaised = false;  ///< the program was not exact enough as it is
   const Found* found = nullptr;
   const Choices* choices = nullptr;

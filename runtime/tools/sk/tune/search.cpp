@@ -34,7 +34,7 @@ std::string kernelOf(const Unit& unit) { return unit.section == "kernels" ? unit
 
 /// What a choice does, from runs without it and with it in turns; `rest` is the trial without it.
 Evidence evidenceOf(const Comparison& comparison, const Trial& rest, const Trial& base) {
-  return {.saved = comparison.saved / std::max(base.median(), 1e-9),
+  return {.saved = comparison.saved() / std::max(base.median(), 1e-9),
           .isTimed = true,
           .scoreWithout = rest.verdict.score};
 }

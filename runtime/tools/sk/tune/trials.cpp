@@ -166,17 +166,17 @@ Comparison Trials::compare(const Setting& first, const Setting& second, int roun
     const auto found = trial.lastKernels.find(kernel);
     return std::max(found == trial.lastKernels.end() ? trial.seconds.back() : found->second, 1e-9);
   };
-  std::vector<double> ratios, saved;
+  std::vector<double> ofFirst, ofSecond;
   Comparison result{.rounds = rounds};
   for (int round = 0; round < rounds; ++round) {
     for (Trial* each : {round % 2 == 0 ? &a : &b, round % 2 == 0 ? &b : &a}) runOnce(*each);
     if (!a.failure.empty() || !b.failure.empty()) return result;
-    ratios.push_back(lastOf(b) / lastOf(a));
-    saved.push_back(lastOf(a) - lastOf(b));
-    result.wins += ratios.back() < 1 ? 1 : 0;
+    ofFirst.push_back(lastOf(a));
+    ofSecond.push_back(lastOf(b));
+    result.wins += ofSecond.back() < ofFirst.back() ? 1 : 0;
   }
-  result.ratio = medianOf(ratios);
-  result.saved = medianOf(saved);
+  result.first = medianOf(ofFirst);
+  result.second = medianOf(ofSecond);
   save();
   return result;
 }

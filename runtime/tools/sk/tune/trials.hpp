@@ -30,13 +30,14 @@ struct Trial {
 
 /// How two settings compare that have run in turns.
 struct Comparison {
-  double saved = 0;  ///< the median of the seconds that the second saves
-  double ratio = 1;  ///< the median of its seconds over those of the first
+  double first = 0, second = 0;  ///< the medians of their seconds, in these rounds alone
   int wins = 0;  ///< rounds in which it was faster
   int rounds = 0;
 
   /// Whether the second is faster by this part of the first, and not by chance: in four of five rounds.
-  bool isFaster(double least) const { return ratio < 1 - least && 5 * wins >= 4 * rounds; }
+  bool isFaster(double least) const { return ratio() < 1 - least && 5 * wins >= 4 * rounds; }
+  double ratio() const { return first > 0 ? second / first : 1; }
+  double saved() const { return first - second; }
 };
 
 /// Thrown where another run would go beyond the budget.

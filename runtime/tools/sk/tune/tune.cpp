@@ -186,6 +186,14 @@ void finishSearch(Trials& trials, const Found& found, Report& report) {
   report.tuned = &trials.run(found.setting);
 }
 
+/// Whether all of the setting was chosen, and timed, at once.
+bool isOneChoice(const Found& found) {
+  const bool isRaised = found.raised.size() == 1 && std::ranges::all_of(found.setting, [&](const auto& each) {
+                          return each.first.name == found.raised.front();
+                        });
+  return found.setting.size() == 1 || isRaised;
+}
+
 /// Searches in the direction that the program needs, and times what was found against the program as it is.
 void search(Trials& trials, const Choices& choices, Found& found, Report& report) {
   try {
@@ -199,12 +207,17 @@ void search(Trials& trials, const Choices& choices, Found& found, Report& report
   trials.liftBudget();
   if (found.isReached && !found.setting.empty()) {
     trials.run(found.setting);
-    report.ratio = trials.compare({}, found.setting, 5).ratio;
-    if (!report.wasRaised && report.ratio > 1 - leastGain / 2) {  // what its parts saved was chance
+    report.times = trials.compare({}, found.setting, 5);
+    if (!report.wasRaised && report.times.ratio() > 1 - leastGain / 2) {  // what its parts saved was chance
       found.setting.clear();
       found.evidence.clear();
-      report.ratio = 1;
+      report.times.second = report.times.first;
     }
+    if (isOneChoice(found)) {  // which has one ratio, not another one of the kernel alone
+      for (auto& [unit, evidence] : found.evidence) evidence.saved = 1 - report.times.ratio();
+    }
+  } else {
+    report.times.first = report.times.second = trials.run({}).median();
   }
   finishSearch(trials, found, report);
 }

@@ -38,6 +38,7 @@ export function measured(errors: StreamErrors, relative: number): StreamErrors {
   const shares = new Shares();
   shares.addAll(errors.shares, part);
   shares.add(errors.unseen, 1 - part);
+  shares.addPath(errors.shares, 1 - part);
   shares.normalize();
   return { ...errors, shares, relative, isEstimated: false };
 }

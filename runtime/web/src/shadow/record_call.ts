@@ -119,13 +119,16 @@ export class CallRecorder {
     this.takeInputErrors();
     const inputs = Math.max(0, ...this.inputErrors.map(({ relative }) => relative));
     for (const { index, name, of, counterpart } of written) {
-      const known = this.records.kernels[this.kernel]!.compared.get(name) ?? { own: 0, amplification: 1 };
+      const record = this.records.kernels[this.kernel]!;
+      const isKnown = record.followed > 0;
+      const known = record.compared.get(name) ?? { own: 0, amplification: 1 };
       const relative = known.own + known.amplification * inputs;
       const has = (what: 'hasNan' | 'hasInfinity') => this.inputErrors.some((errors) => errors[what]);
       const isOfOthers = this.inputErrors.some((errors) => errors.isEstimated && errors.unseen !== this.kernel);
       const exception = Math.max(-1, ...this.inputErrors.map((errors) => errors.exception));
-      const shares = relative > 0 ? this.sharesOf(index, known.own / relative) : new Shares();
-      const after = { relative, shares, hasNan: has('hasNan'), hasInfinity: has('hasInfinity'), exception, isEstimated: true, unseen: isOfOthers ? notCompared : this.kernel };
+      const shares = !isKnown ? this.sharesThrough(index) : relative > 0 ? this.sharesOf(index, known.own / relative) : new Shares();
+      const unseen = isOfOthers || !isKnown ? notCompared : this.kernel;
+      const after = { relative, shares, hasNan: has('hasNan'), hasInfinity: has('hasInfinity'), exception, isEstimated: true, unseen };
       counterpart.errors = withRest(after, of, counterpart);
     }
   }
@@ -217,10 +220,24 @@ export class CallRecorder {
     return withRest(after, written.of, written.counterpart);
   }
 
+  private weightsOf(output: number): readonly number[] {
+    return this.records.influences.weights(this.kernel, output, this.reads.map(({ index }, i) => [index, this.inputErrors[i]!.relative]));
+  }
+
+  /** The kernel may add anything, and may magnify errors of its inputs or drop them: no other kernel gets a share through it. */
+  private sharesThrough(output: number): Shares {
+    const shares = new Shares();
+    shares.addThrough(this.kernel, 1);
+    const weights = this.weightsOf(output);
+    const inputs = weights.reduce((sum, weight) => sum + weight, 0);
+    this.inputErrors.forEach(({ shares: before }, i) => shares.addPath(before, inputs > 0 ? weights[i]! / inputs : 1));
+    return shares;
+  }
+
   private sharesOf(output: number, own: number): Shares {
     const shares = new Shares();
     shares.add(this.kernel, own);
-    const weights = this.records.influences.weights(this.kernel, output, this.reads.map(({ index }, i) => [index, this.inputErrors[i]!.relative]));
+    const weights = this.weightsOf(output);
     const inputs = weights.reduce((sum, weight) => sum + weight, 0);
     this.inputErrors.forEach(({ shares: before }, i) => {
       if (inputs > 0) shares.addAll(before, ((1 - own) * weights[i]!) / inputs);

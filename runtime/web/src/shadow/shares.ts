@@ -8,15 +8,34 @@ export const writtenByHost = -1;
 /** The number of what calls added that were not compared. */
 export const notCompared = -2;
 
+type List = Map<number, number>;
+
+function addTo(list: List, kernel: number, share: number): void {
+  if (share > 0) list.set(kernel, (list.get(kernel) ?? 0) + share);
+}
+
 export class Shares {
-  private readonly all = new Map<number, number>();
+  private readonly all: List = new Map();
+  private readonly through: List = new Map();
 
   add(kernel: number, share: number): void {
-    if (share > 0) this.all.set(kernel, (this.all.get(kernel) ?? 0) + share);
+    addTo(this.all, kernel, share);
   }
 
   addAll(others: Shares, factor: number): void {
     for (const [kernel, share] of others.all) this.add(kernel, share * factor);
+    this.addPath(others, factor);
+  }
+
+  /** Nobody knows whose errors a share is: they arose in a kernel of which no call was compared, or that kernel has magnified them. */
+  addThrough(kernel: number, share: number): void {
+    this.add(notCompared, share);
+    addTo(this.through, kernel, share);
+  }
+
+  /** The errors have passed through the same kernels as those of `others`, of which no call was compared. */
+  addPath(others: Shares, factor: number): void {
+    for (const [kernel, share] of others.through) addTo(this.through, kernel, share * factor);
   }
 
   sum(): number {
@@ -28,14 +47,21 @@ export class Shares {
   /** Makes them add up to 1, without those that are next to nothing. */
   normalize(): void {
     const whole = this.sum();
-    for (const [kernel, share] of [...this.all]) {
-      if (whole > 0 && share / whole >= 1e-9) this.all.set(kernel, share / whole);
-      else this.all.delete(kernel);
+    for (const list of [this.all, this.through]) {
+      for (const [kernel, share] of [...list]) {
+        if (whole > 0 && share / whole >= 1e-9) list.set(kernel, Math.min(1, share / whole));
+        else list.delete(kernel);
+      }
     }
   }
 
   entries(): readonly (readonly [kernel: number, share: number])[] {
     return [...this.all];
+  }
+
+  /** Kernels of which no call was compared, and which part of the errors has passed through each of them. */
+  path(): readonly (readonly [kernel: number, share: number])[] {
+    return [...this.through];
   }
 
   copied(): Shares {

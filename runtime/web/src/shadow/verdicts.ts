@@ -192,6 +192,16 @@ function overflowsFirst({ exceptions }: Records): boolean {
   return first?.kind === 'infinity';
 }
 
+/** Whose errors nobody knows: those of kernels of which no call was compared, and what has passed through them. */
+function unknownText(records: Records, result: ResultRecord, unknown: number): string {
+  const [some, most] = [0.1, 4];
+  const names = result.shares.path().filter(([, part]) => part >= some).slice(0, most).map(([kernel]) => records.nameOf(kernel));
+  const [percent, survivors] = [(100 * unknown).toFixed(0), `${digitsOf(result.largest)} of '${result.name}' survive`];
+  if (names.length === 0) return `calls that were not compared (every, kernels) add ${percent} % of the error of what the page reads: ${survivors}`;
+  const [are, them] = names.length === 1 ? ['is', 'it'] : ['are', 'them'];
+  return `${percent} % of the error of what the page reads arises in, or is magnified by, ${names.join(' or ')}, which ${are} not compared: ${survivors}; name ${them} in kernels, too`;
+}
+
 function shareVerdicts(records: Records, result: ResultRecord): Verdict[] {
   const shares = sharesOf(records);
   const most = shares.reduce((best, share, i) => (share > (shares[best] ?? 0) ? i : best), -1);
@@ -199,8 +209,7 @@ function shareVerdicts(records: Records, result: ResultRecord): Verdict[] {
   if (!(result.largest > 0)) return [];
   const unknown = result.shares.entries().find(([kernel]) => kernel === notCompared)?.[1] ?? 0;
   if (unknown > (shares[most] ?? 0)) {
-    const text = `calls that were not compared (every, kernels) add ${(100 * unknown).toFixed(0)} % of the error of what the page reads: ${digitsOf(result.largest)} of '${result.name}' survive`;
-    return [{ kind: 'error', kernel: '', call: 0, text }];
+    return [{ kind: 'error', kernel: '', call: 0, text: unknownText(records, result, unknown) }];
   }
   if (worst === undefined) return [];
   const choices = worst.choices === '' ? '' : ` (${worst.choices})`;
