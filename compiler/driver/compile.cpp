@@ -106,7 +106,7 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
   const auto isWanted = [&](const ir::Kernel& kernel) {
     return kernel.name == wanted || qualifiedName(kernel) == wanted;
   };
-  std::vector<ir::KernelId> numbers;   // old ids of the kept kernels; combining overloads share the name
+  std::vector<ir::KernelId> numbers;  // old ids of the kept kernels; combining overloads share the name
   ir::KernelId next = 0;
   for (const ir::Kernel& kernel : module.kernels) numbers.push_back(isWanted(kernel) ? next++ : next);
   std::erase_if(module.kernels, [&](const ir::Kernel& kernel) { return !isWanted(kernel); });

@@ -25,7 +25,8 @@ std::vector<Extents> skewsOf(int steps, std::int64_t reach) {
 TEST_CASE("a call is behind others by how far it reads what they write, and they read what it writes") {
   CHECK(skewsOf(4, 2) == std::vector<Extents>{{0, 0}, {2, 2}, {4, 4}, {6, 6}});
   Skews skews;
-  const TileAccess reads[] = {{0, false, {1, 5}}}, writes[] = {{0, true, {0, 0}}}, other[] = {{1, false, {9, 9}}};
+  const TileAccess reads[] = {{0, false, {1, 5}}}, writes[] = {{0, true, {0, 0}}},
+                   other[] = {{1, false, {9, 9}}};
   CHECK(skews.add(reads) == Extents{0, 0});
   CHECK(skews.add(writes) == Extents{1, 5});
   CHECK(skews.add(other) == Extents{0, 0});  // nobody writes that array
@@ -34,7 +35,8 @@ TEST_CASE("a call is behind others by how far it reads what they write, and they
 }
 
 /// Whether tiles compute each element of each step once, and only after all that it reads, with tiles of a phase in any order.
-void checkOrder(const Extents& extent, const std::vector<TimeTiles::Axis>& axes, int steps, std::int64_t reach) {
+void checkOrder(const Extents& extent, const std::vector<TimeTiles::Axis>& axes, int steps,
+                std::int64_t reach) {
   const TimeTiles tiles(extent, axes);
   const std::vector<Extents> skews = skewsOf(steps, reach);
   using Element = std::tuple<std::size_t, std::int64_t, std::int64_t>;  // step, x, y

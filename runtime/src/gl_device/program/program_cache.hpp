@@ -119,7 +119,8 @@ struct KernelProgram {
   std::array<GLint, 3> workGroup{1, 1, 1};
   gl::IntUniform foldGroups, foldResult;  ///< of programs that fold (assemble/reduce/group_fold.hpp)
   bool isGrouped = false;  ///< each work group computes one texel
-  std::int32_t loopNumber = 0;  ///< by which it reports loops that were ended early (LoopReports); 0: it does not
+  std::int32_t loopNumber =
+      0;  ///< by which it reports loops that were ended early (LoopReports); 0: it does not
   gl::IntUniform loopNumberUniform;  ///< likewise
   bool isPacked = false;  ///< a texel of the domain holds assemble::lanes elements
   LayoutUniforms domain;
