@@ -51,7 +51,7 @@ class IterationCounter {
     return each && count && *count <= largestCount ? limitedCount(*each * *count) : std::nullopt;
   }
 
-  /// Of an operator: only divisions of 64-bit integers have any (`sk_divided` of runtime/src/assemble/glsl/longs.glsl).
+  /// The iterations of an operator. Only divisions of 64-bit integers are loops (`sk_divided` in runtime/src/assemble/glsl/longs.glsl).
   static std::int64_t division(BinaryOp op, const Type& type) {
     constexpr std::int64_t each = 65;
     return (op == BinaryOp::Div || op == BinaryOp::Rem) && type.isLong() ? each * type.width : 0;

@@ -167,6 +167,32 @@ TEST_CASE("streams that calls outside of a loop have written are seen") {
   }
 }
 
+TEST_CASE(
+    "streams that are written in tiles for the first time are swapped after the other calls of an "
+    "iteration") {
+  sk::Device device("native");
+  const sk::Shape shape{300, 200};
+  auto u = device.stream<float>(shape), v = device.stream<float>(shape), w = device.stream<float>(shape);
+  auto a = device.stream<float>(shape), b = device.stream<float>(shape), c = device.stream<float>(shape);
+  auto sum = device.stream<float>({1}), other = device.stream<float>({1});
+  for (auto* stream : {&u, &a}) stream->write(drawn(shape.size(), 3));
+  const auto step = [](auto& from, auto& between, auto& to, auto& total) {
+    tiled::heat(0.2f, from, between);
+    tiled::damp(0.1f, between, to);
+    tiled::total(to, total);
+    tiled::scaled(total, to, to);
+    std::swap(from, to);
+  };
+  sk::Loop loop = device.record([&] { step(a, b, c, other); });
+  for (int times = 1; times < 4; ++times) {
+    step(u, v, w, sum);
+    loop.repeat(1);
+    REQUIRE(haveSameBits(a.read(), u.read()));
+    REQUIRE(haveSameBits(b.read(), v.read()));
+    REQUIRE(haveSameBits(c.read(), w.read()));
+  }
+}
+
 TEST_CASE("a plan says what runs in tiles, and why the rest does not") {
   sk::Device device("native");
   const sk::Shape shape{300, 200};

@@ -39,6 +39,13 @@ struct ResolvedCall {
   ResolvedCall of(const program::Kernel& variant, const DeviceLimits& limits) const;
 };
 
+/// Whether a call writes the stream of a parameter.
+inline bool isWritten(program::Role role) {
+  using program::Role;
+  return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
+         role == Role::Accumulator;
+}
+
 /// The variant of a kernel for these values of its Spec parameters, or the kernel itself.
 const program::Kernel& unrolledVariant(const program::Kernel& kernel, const assemble::SpecValues& specs);
 

@@ -47,7 +47,7 @@ class RecordedCall {
 
   virtual void run() = 0;
 
-  /// Of the kernel, or of what else it does.
+  /// The name of the kernel, or of what the call does instead.
   virtual std::string_view name() const { return "a step of the runtime"; }
   /// The call as the device repeats it, where it has prepared that, which may happen here; else null, and whyNotOnDevice().
   virtual RecordedCall* onDevice() { return nullptr; }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/internal_work.hpp"
 #include "sk/error.hpp"
@@ -306,9 +307,7 @@ void OwnedArguments::addUses(std::vector<StreamUse>& uses) const {
     StreamState* const stream = arguments_[i].region.stream;
     if (stream == nullptr) continue;
     const program::Role role = kernel_->parameters[i].role;
-    const bool isWritten = role == program::Role::Output || role == program::Role::Accumulator ||
-                           role == program::Role::Scatter || role == program::Role::VariableOutput;
-    uses.push_back({stream, isWritten});
+    uses.push_back({stream, isWritten(role)});
     if (role == program::Role::Scatter) uses.push_back({stream, false});  // what it does not store to stays
   }
 }

@@ -31,8 +31,8 @@ class ChunkRunner {
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
               ChunkHook hook = {}, std::size_t rows = 1);
 
-  /// Computes several rows in parts of so many columns that the nearest cache holds what they read: for elements that are in
-  /// the next cache already, because those in memory are better read in the order in which they lie.
+  /// Computes rows in blocks of columns that fit the first-level cache. This pays only if the elements are in the second-level
+  /// cache already: memory is faster if it is read in order.
   void stayNear();
 
   /// The number of rows that run() should get in one call. Several rows together cost less than one at a time.

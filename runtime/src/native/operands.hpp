@@ -25,12 +25,6 @@
 
 namespace sk {
 
-inline bool isWritten(program::Role role) {
-  using program::Role;
-  return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
-         role == Role::Accumulator;
-}
-
 /// The operands of one call, and what they point to.
 class Operands {
   using Extents = native::Extents;

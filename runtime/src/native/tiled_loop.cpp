@@ -294,6 +294,7 @@ ArrayNumbers TiledLoop::forEachCall(const LoopState& loop, const TiledGroup& gro
       visit(*call, std::span<const TileAccess>(accesses));
       for (NativeStream* const stream : call->replaced()) numbers.replace(stream);
     }
+    if (n + 1 == iterations && !spansIterations_) break;  // other calls come before the exchange
     for (const auto& [a, b] : loop.exchanges())
       numbers.exchange(static_cast<NativeStream*>(a), static_cast<NativeStream*>(b));
   }
@@ -311,7 +312,6 @@ void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mo
     std::int64_t bytes = 0;
   };
   std::unordered_map<std::size_t, Array> arrays;
-  std::int64_t iteration = 0;
   const std::int64_t two = std::min<std::int64_t>(mostIterations, 2);  // swaps alternate between two arrays
   forEachCall(loop, group, two, [&](const TiledCall& call, std::span<const TileAccess> accesses) {
     std::unordered_map<std::size_t, Array> ofCall;
@@ -326,7 +326,6 @@ void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mo
     for (const auto& [number, array] : ofCall)
       problem.bytesOfCalls += array.bytes * (array.isWritten ? 2 : 1);
     for (std::size_t d = 0; d < 4; ++d) problem.isPeriodic[d] = problem.isPeriodic[d] || call.isPeriodic(d);
-    ++iteration;
   });
   problem.bytesOfCalls /= two;
   for (const auto& [number, array] : arrays) {

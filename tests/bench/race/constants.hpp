@@ -28,7 +28,7 @@ constexpr float reactionSpreadV = 0.08f;
 
 /// Steps of a run of the programs that repeat a step.
 constexpr int loopSteps = 100;
-/// Of the wave equation: the square of speed times time step over spacing; stable up to 1/2.
+/// The coefficient of the wave equation, (speed * time step / spacing)^2. The scheme is stable up to 1/2.
 constexpr float waveStiffness = 0.2f;
 
 // A step of the boiling lattice: temperatures, and how strongly things happen.

@@ -19,7 +19,7 @@ struct GroupShape {
   std::int32_t invocations, run;
 };
 
-/// Of Sum, Store and StorePairs.
+/// The programs for Sum, Store and StorePairs use it.
 constexpr GroupShape plainShape{256, radixSumTile / 256};
 
 GroupShape shapeOf(const Profile& profile) {

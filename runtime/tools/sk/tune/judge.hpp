@@ -47,7 +47,7 @@ struct ResultError {
   Metric metric;
   double error = 0;  ///< of the worst of its reads; for Psnr: dB
   double overTolerance = 0;  ///< at most 1 if it is exact enough
-  /// Of the right numbers, rounded to floats, over the tolerance, if the run has read floats: no choice is more exact. 0 otherwise.
+  /// The error of rounding the right results to floats, divided by the tolerance: no choice has less. 0 if no floats are read.
   double ofRounding = 0;
 };
 
