@@ -103,13 +103,35 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
   std::string known;
   for (const ir::Kernel& kernel : module.kernels)
     known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
-  const auto isWanted = [&](const ir::Kernel& kernel) {
+  const auto isNamed = [&](const ir::Kernel& kernel) {
     return kernel.name == wanted || qualifiedName(kernel) == wanted;
   };
+  std::set<const ir::Kernel*> wantedKernels;
+  for (const ir::Kernel& kernel : module.kernels) {
+    if (isNamed(kernel)) wantedKernels.insert(&kernel);
+  }
+  std::erase_if(module.pipelines, [&](const ir::Pipeline& pipeline) { return !isNamed(pipeline.face); });
+  for (const ir::Pipeline& pipeline : module.pipelines) {
+    for (const ir::PipelinePass& pass : pipeline.passes) {
+      const ir::Kernel& kernel = module.kernels[pass.kernel];
+      wantedKernels.insert(&kernel);
+      if (kernel.reduction && kernel.reduction->combine)
+        wantedKernels.insert(&module.kernels[*kernel.reduction->combine]);
+      if (kernel.assertions) wantedKernels.insert(&module.kernels[kernel.assertions->check]);
+    }
+  }
+  const auto isWanted = [&](const ir::Kernel& kernel) { return wantedKernels.contains(&kernel); };
   std::vector<ir::KernelId> numbers;  // old ids of the kept kernels; combining overloads share the name
   ir::KernelId next = 0;
   for (const ir::Kernel& kernel : module.kernels) numbers.push_back(isWanted(kernel) ? next++ : next);
-  std::erase_if(module.kernels, [&](const ir::Kernel& kernel) { return !isWanted(kernel); });
+  std::vector<ir::Kernel> kept;
+  for (ir::Kernel& kernel : module.kernels) {
+    if (isWanted(kernel)) kept.push_back(std::move(kernel));
+  }
+  module.kernels = std::move(kept);
+  for (ir::Pipeline& pipeline : module.pipelines) {
+    for (ir::PipelinePass& pass : pipeline.passes) pass.kernel = numbers[pass.kernel];
+  }
   for (ir::Kernel& kernel : module.kernels) {
     if (kernel.reduction && kernel.reduction->combine) {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
@@ -258,6 +280,16 @@ void printPredicated(const Job& job, const ir::Module& module) {
   job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
 }
 
+/// Reports the first pipeline that a module for browsers cannot have, since there only single kernels run.
+void reportPipelines(const Options& options, const ir::Module& module, Diagnostics& diagnostics) {
+  if (options.emit != Emit::Js) return;
+  for (const ir::Pipeline& pipeline : module.pipelines) {
+    if (pipeline.isKernel) continue;
+    return diagnostics.report(Diag::PipelineInBrowser, pipeline.face.loc,
+                              {pipeline.face.name, std::to_string(pipeline.passes.size())});
+  }
+}
+
 /// Warns of the first printf, and of the first assertion, that some of the programs leave out.
 void reportLeftOut(const Options& options, const ir::Module& module, Diagnostics& diagnostics) {
   if (options.emit == Emit::Js && !module.assertions.empty())
@@ -295,6 +327,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
   }
+  if (!frontend.diagnostics().hasErrors()) reportPipelines(options, *module, frontend.diagnostics());
   if (!frontend.diagnostics().hasErrors()) reportLeftOut(options, *module, frontend.diagnostics());
   if (!frontend.diagnostics().hasErrors()) emit::reportOverloads(*module, frontend.diagnostics());
   if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());
