@@ -48,7 +48,7 @@ OWN_RATIOS = [
     ("native", ["gray-scott loop"], "calls", 2.0, 24),
 ]
 # Our contender, program, another way of ours, most that the first takes of its time, from which size on.
-OWN_COSTS = [("native", "chain of four", "in one kernel", 1.15, 24)]
+OWN_COSTS = [("native", name, "in one kernel", 1.15, 24) for name in ("chain of four", "pipeline of four")]
 # Our contender, program, the program whose bytes a second it is measured by, least part of them, log2 of the size of both.
 BANDWIDTHS = [("native", "5-point matrix", "saxpy", 0.9, 24)]
 # Our contender, program, log2 of the size, what a run is so many of, most seconds for one.
