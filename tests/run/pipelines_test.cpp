@@ -237,6 +237,49 @@ TEST_CASE("drawn pipelines have the bits of their calls") {
   });
 }
 
+// The test program sets SK_LOOP_TILES, so that streams of this size need tiles.
+TEST_CASE("tiles of stencils have the bits of whole calls, and hold no local stream whole") {
+  sk::Device& one = device("native");
+  // The first two have tiles of rows, the next one also of columns, the others of elements.
+  for (const sk::Shape& shape : {sk::Shape{1200, 64}, sk::Shape{300, 257}, sk::Shape{40, 3000},
+                                 sk::Shape{70000, 1}, sk::Shape{1, 70000}}) {
+    INFO(toString(shape));
+    Field x = filled(one, shape, 1), w = filled(one, shape, 2), r = one.stream<float>(shape),
+          s = one.stream<float>(shape);
+    Field a = one.stream<float>(shape), b = one.stream<float>(shape), c = one.stream<float>(shape);
+    Field d = one.stream<float>(shape), r2 = one.stream<float>(shape), s2 = one.stream<float>(shape);
+    one.countPasses(true);
+    blurred(x, r);
+    CHECK(one.passCount().passes == 1);
+    one.countPasses(false);
+    across(x, a);
+    down(a, r2);
+    CHECK(haveSameBits(r, r2));
+    one.countPasses(true);
+    deep(x, w, r, s);
+    if (shape[0] != 40 && shape[0] != 300)
+      CHECK(one.passCount().passes == 1);  // else they would compute too much twice
+    one.countPasses(false);
+    down(x, a);
+    across(a, b);
+    far(b, w, a, c, d);
+    down(c, b);
+    mixed(b, d, r2);
+    down(d, s2);
+    CHECK(haveSameBits(r, r2));
+    CHECK(haveSameBits(s, s2));
+    around(x, r);  // periodic: call by call
+    blur(x, a);
+    blur(a, r2);
+    CHECK(haveSameBits(r, r2));
+    x.copyTo(r2);
+    blurred(x, x);  // in place
+    across(r2, a);
+    down(a, r2);
+    CHECK(haveSameBits(x, r2));
+  }
+}
+
 TEST_CASE("mistakes in calls of pipelines name the pipeline and its parameters") {
   sk::Device& one = device("native");
   Field x = filled(one, {4, 4}), r = one.stream<float>({4, 4}), wide = one.stream<float>({4, 5});

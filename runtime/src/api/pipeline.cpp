@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "call/check_written.hpp"
 #include "device/device_state.hpp"
+#include "device/loop_state.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
@@ -38,7 +40,10 @@ class PipelineCall {
     checkOutputs();
     for (std::size_t i = 0; i < pipeline_.passes.size(); ++i) checkLaterReads(i);
     allocate();
-    for (const PipelinePass& pass : pipeline_.passes) run(pass);
+    if (!runTogether()) {
+      for (const PipelinePass& pass : pipeline_.passes) run(pass);
+    }
+    keepLocals();
   }
 
  private:
@@ -108,6 +113,12 @@ class PipelineCall {
     }
   }
 
+  static bool isMap(const Kernel& kernel) {
+    return std::ranges::none_of(kernel.parameters, [](const program::Parameter& parameter) {
+      return parameter.role == Role::VariableOutput || parameter.role == Role::Scatter;
+    });
+  }
+
   static bool isWritten(Role role) {
     return role == Role::Output || role == Role::Accumulator || role == Role::Scatter ||
            role == Role::VariableOutput;
@@ -117,9 +128,44 @@ class PipelineCall {
     if (pipeline_.locals.empty()) return;
     DeviceState& device = this->device();
     for (std::size_t local = 0; local < pipeline_.locals.size(); ++local) {
-      const auto stream = device.createStream(elementOf(local), domain_, Storage::Single).release();
-      locals_.emplace_back(stream);
+      const program::Element& element = elementOf(local);
+      const auto kept = std::ranges::find_if(device.keptLocals, [&](const detail::StreamOwner& stream) {
+        return stream.get() != nullptr && stream->element == &element && stream->shape == domain_;
+      });
+      if (kept != device.keptLocals.end() && device.recording == nullptr)
+        locals_.push_back(std::move(*kept));
+      else
+        locals_.emplace_back(device.createStream(element, domain_, Storage::Single).release());
     }
+    device.keptLocals.clear();
+  }
+
+  /// Keeps the local streams for the next call: fresh memory from the system costs as much as a pass.
+  void keepLocals() {
+    if (locals_.empty()) return;
+    DeviceState& device = *locals_.front()->device;
+    if (device.recording == nullptr && device.interposed == nullptr && !device.hasQueue())
+      device.keptLocals = std::move(locals_);
+  }
+
+  /// Lets the device run all kernels together, if it does and nothing has to see each of them.
+  bool runTogether() const {
+    if (locals_.empty()) return false;
+    DeviceState& device = *locals_.front()->device;
+    const bool isSeen = device.runsCallByCall || device.recording != nullptr || device.isChecking ||
+                        device.interposed != nullptr || device.results != nullptr || checksHalos() ||
+                        checksAsserts();
+    if (isSeen || !device.mayRunTogether(domain_.size())) return false;
+    for (const PipelinePass& pass : pipeline_.passes) {
+      if (pass.reduction != nullptr || !isMap(*pass.kernel)) return false;
+    }
+    LoopState calls(device);
+    for (const PipelinePass& pass : pipeline_.passes) run(pass);
+    calls.finish();
+    std::vector<StreamState*> locals;
+    for (const detail::StreamOwner& local : locals_) locals.push_back(local.get());
+    if (!device.runTogether(calls, locals)) calls.runOnce();
+    return true;
   }
 
   /// The device of the streams, which are all streams of this process alone.

@@ -76,31 +76,6 @@ class ArrayNumbers {
   std::vector<std::size_t> written_;
 };
 
-/// Bytes of the cache that a thread's tile may take: SK_LOOP_TILES says how many, 0 if it is "off". `isChain`: each element is computed
-/// from itself alone, so that tiles of any size save as much.
-std::int64_t cacheOfTile(bool isChain) {
-  if (const char* const given = std::getenv("SK_LOOP_TILES")) {
-    const std::string_view text = given;
-    if (text == "off") return 0;
-    std::int64_t bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error == std::errc() && end == text.data() + text.size() && bytes > 0) return bytes;
-    throw Error(fmt::format(
-        "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
-        text));
-  }
-  if (isChain) {
-    constexpr std::int64_t nearest = 48 << 10;
-    const std::int64_t first = bytesOfCache(1);
-    return (first > 0 ? first : nearest) * 2 / 3;
-  }
-  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
-  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
-  const std::int64_t found = bytesOfCache(2);
-  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
-  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
-}
-
 /// The most states of its streams' arrays for which a call keeps its code.
 constexpr std::size_t mostCodes = 16;
 
@@ -345,7 +320,7 @@ void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mo
                 [&](const TiledCall&, std::span<const TileAccess> accesses) { skews.add(accesses); });
     return skews.most();
   };
-  problem.cache = cacheOfTile(problem.skew(two) == Extents{});
+  problem.cache = native::cacheOfTile(problem.skew(two) == Extents{});
   group.choice = native::chooseTiles(problem);
 }
 

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "native/time_tiles.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "native/thread_pool.hpp"
+#include "sk/error.hpp"
+#include "support/host_limits.hpp"
 
 namespace sk::native {
 
@@ -117,6 +126,29 @@ std::optional<TileChoice> choiceAlong(const TileProblem& problem, std::span<cons
 }
 
 }  // namespace
+
+std::int64_t cacheOfTile(bool isChain) {
+  if (const char* const given = std::getenv("SK_LOOP_TILES")) {
+    const std::string_view text = given;
+    if (text == "off") return 0;
+    std::int64_t bytes = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
+    if (error == std::errc() && end == text.data() + text.size() && bytes > 0) return bytes;
+    throw Error(fmt::format(
+        "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
+        text));
+  }
+  if (isChain) {
+    constexpr std::int64_t nearest = 48 << 10;
+    const std::int64_t first = bytesOfCache(1);
+    return (first > 0 ? first : nearest) * 2 / 3;
+  }
+  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
+  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
+  const std::int64_t found = bytesOfCache(2);
+  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
+  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
+}
 
 std::optional<TileChoice> chooseTiles(const TileProblem& problem) {
   std::int64_t elements = 1;
