@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "native/components.hpp"
@@ -43,7 +44,11 @@ bool pays(const native::Operand& from, const Extents& domain, std::int64_t rows)
 PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows) {
   for (std::size_t i = 0; i < std::min<std::size_t>(call.operands.size(), 64); ++i) {
     const native::Operand& from = call.operands[i];
-    if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held) continue;
+    // the slots of neighbours lie in the stream itself
+    const bool hasSlots = std::ranges::any_of(std::span(kernel.code->slots, kernel.code->slotCount),
+                                              [&](const native::Slot& slot) { return slot.parameter == i; });
+    if (hasSlots || (kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held)
+      continue;
     std::vector<std::size_t> bytes;
     forEachScalar(*kernel.parameters[i].element, RealType::Float,
                   [&](std::size_t, std::size_t size, auto) { bytes.push_back(size); });
