@@ -40,6 +40,8 @@ class BlockPieces {
     return at;
   }
 
+  /// True if all pieces are single rows, or parts of one.
+  bool areInRows() const { return height_ == 1; }
   /// Calls visit(first, count) for the rows of a piece.
   template <class Visit>
   void forEachRow(const native::Extents& block, std::int64_t piece, Visit&& visit) const {
