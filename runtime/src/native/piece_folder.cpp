@@ -90,9 +90,6 @@ void LeafFolder::foldOneByOne(StateColumns& state, std::int64_t x, std::int64_t 
 using native::Extents;
 
 const StateColumns& PieceFolder::fold(const Extents& block, std::int64_t piece) {
-  if (program_.isCommutative && pieces_.areInRows()) {
-    if (const StateColumns* const folded = foldAtOnce(block, piece)) return *folded;
-  }
   pieces_.forEachRow(block, piece, [&](const Extents& first, std::int64_t count) {
     leaves_.moveToRow(first);
     const std::int64_t end = first[0] + count;
@@ -109,19 +106,6 @@ const StateColumns& PieceFolder::fold(const Extents& block, std::int64_t piece) 
 }
 
 // ---- in any order: consecutive elements go to consecutive columns --------------------------------
-
-const StateColumns* PieceFolder::foldAtOnce(const Extents& block, std::int64_t piece) {
-  bool isFolded = false;
-  pieces_.forEachRow(block, piece, [&](const Extents& first, std::int64_t count) {
-    const std::int64_t leaves = wholeLeaves(count);
-    isFolded = leaves > 1 && leaves * leafRounds * side_ == count && count <= leaves_.longest();
-    if (!isFolded) return;
-    leaves_.moveToRow(first);
-    leaves_.foldLeaves(leafColumns_, first[0], side_, leafRounds, leaves);
-    combiner_.gather(leafColumns_, leaves * side_);
-  });
-  return isFolded ? &leafColumns_ : nullptr;
-}
 
 void PieceFolder::foldColumns(std::int64_t x, std::int64_t count) {
   while (count >= side_) {

@@ -99,8 +99,6 @@ class PieceFolder {
   const StateColumns& fold(const native::Extents& block, std::int64_t piece);
 
  private:
-  /// Folds a piece that one call can fold; returns null for any other, and then has done nothing.
-  const StateColumns* foldAtOnce(const native::Extents& block, std::int64_t piece);
   void foldColumns(std::int64_t x, std::int64_t count);
   /// The number of leaves of whole columns that one call can fold, a power of 2; 0 or 1 if it cannot fold
   /// several.

@@ -16,6 +16,7 @@
 #include "native/components.hpp"
 #include "native/memory.hpp"
 #include "native/padded_rows.hpp"
+#include "native/per_worker.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/variable_outputs.hpp"
@@ -150,20 +151,15 @@ class CodeRun {
     const bool isAlone = rowsEntry_ == nullptr ? native::threadsFor(pieces_.count(), costOfPiece()) == 1
                                                : native::threadsFor(blocks_.count(), costOfBlock()) == 1;
     if (isRecorded_ || !isAlone) return run();
+    if (rowsEntry_ != nullptr) {
+      copyGathers();
+      if (!blockRunner_) blockRunner_.emplace(*this);
+      visitBlocks({0, blocks_.count()}, *blockRunner_);
+      return;
+    }
     const std::size_t atOnce = rowsAtOnce();
-    if (rowsEntry_ != nullptr) copyGathers();
-    if (!runner_) {
-      if (rowsEntry_ == nullptr) {
-        runner_.emplace(layout_, entry_, frame_.get(), ChunkHook{}, atOnce);
-      } else {
-        runner_.emplace(layout_, *rowsEntry_, frameOfBlocks(blocksFrame_));
-      }
-    }
-    if (rowsEntry_ == nullptr) {
-      visitPieces({0, pieces_.count()}, *runner_, atOnce);
-    } else {
-      visitBlocks({0, blocks_.count()}, *runner_, blocksFrame_);
-    }
+    if (!runner_) runner_.emplace(layout_, entry_, frame_.get(), ChunkHook{}, atOnce);
+    visitPieces({0, pieces_.count()}, *runner_, atOnce);
   }
 
   /// Computes a box of the domain on the calling thread. There are no variable and scatter outputs.
@@ -237,30 +233,31 @@ class CodeRun {
 
   void runBlocks() {
     copyGathers();
-    native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome, [&](Range range) {
-      CallMemory memory;
-      std::optional<CodeFrame> own;
-      ChunkRunner runner(layout_, *rowsEntry_, frameOfBlocks(own, memory.get()));
-      visitBlocks(range, runner, own);
-    });
+    PerWorker<BlockRunner> runners(native::threadsFor(blocks_.count(), costOfBlock()));
+    native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome,
+                       [&](Range range, int worker) { visitBlocks(range, runners.of(worker, *this)); });
   }
   void copyGathers() {
     padded_.copyInto(frame_);
     panels_.fill();
   }
-  /// The frame for the blocks that one thread computes: its own if it moves from panel to panel.
-  const native::Frame* frameOfBlocks(
-      std::optional<CodeFrame>& own,
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) const {
-    return panels_.isEmpty() ? frame_.get() : own.emplace(frame_, memory).get();
-  }
-  void visitBlocks(Range range, ChunkRunner& runner, std::optional<CodeFrame>& own) const {
-    std::optional<std::int64_t> panel;
+  /// What one thread needs to compute blocks: its own frame if it moves from panel to panel.
+  struct BlockRunner {
+    explicit BlockRunner(const CodeRun& run)
+        : runner(run.layout_, *run.rowsEntry_,
+                 run.panels_.isEmpty() ? run.frame_.get() : own.emplace(run.frame_, memory.get()).get()) {}
+
+    CallMemory memory;
+    std::optional<CodeFrame> own;
+    std::optional<std::int64_t> panel;  ///< the x that `own` has moved to
+    ChunkRunner runner;
+  };
+  void visitBlocks(Range range, BlockRunner& to) const {
     blocks_.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
       const Extents at = inDomain(first);
-      if (own && panel != at[0]) panels_.moveTo(at[0], *own);
-      panel = at[0];
-      runner.run(at, count, static_cast<std::size_t>(rows));
+      if (to.own && to.panel != at[0]) panels_.moveTo(at[0], *to.own);
+      to.panel = at[0];
+      to.runner.run(at, count, static_cast<std::size_t>(rows));
     });
   }
   std::int64_t costOfBlock() const { return blocks_.elementsOfOne() << 6; }
@@ -401,7 +398,7 @@ class CodeRun {
   RowBlocks blocks_;  ///< for rowsEntry_
   PaddedRows padded_;
   bool isRecorded_;
-  std::optional<CodeFrame> blocksFrame_;  ///< of runAgain(), like runner_
+  std::optional<BlockRunner> blockRunner_;  ///< of runAgain(), like runner_
   std::optional<ChunkRunner> runner_;
 };
 
