@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <llvm/IR/Constants.h>
+#include <llvm/IR/MDBuilder.h>
 
 #include "ir/build.hpp"
 #include "native/arithmetic.hpp"
@@ -285,7 +286,9 @@ void FunctionCode::writeUnchecked(const Loop& n, llvm::BasicBlock* end) {
   if (loop.gathers.empty()) return;
   llvm::BasicBlock* const inside = newBlock("unchecked");
   llvm::BasicBlock* const outside = newBlock("checked");
-  b.CreateCondBr(areInside, inside, outside);
+  // so that values of the loop without tests stay in registers
+  b.CreateCondBr(areInside, inside, outside,
+                 llvm::MDBuilder(b.getContext()).createLikelyBranchWeights());
   b.SetInsertPoint(inside);
   writeWalks(n, loop, indices, iterations, end);
   b.SetInsertPoint(outside);
