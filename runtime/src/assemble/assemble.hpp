@@ -34,7 +34,7 @@ enum class Stage : std::uint8_t {
 
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
 struct Profile {
-  std::string_view name;        ///< "glsl330", "essl300", "glsl430", "webgl2"
+  std::string_view name;        ///< "glsl330", "essl300", "glsl430", "essl310", "webgl2"
   std::string_view version;     ///< the #version line
   Stage stage;
   bool es;                      ///< precision statements, ES formats and limits
@@ -64,9 +64,19 @@ struct Profile {
   bool highProducts = true;
   /// Compute programs may use subgroups of 32 invocations (glsl/subgroups.hpp), and 48 KiB of shared memory in a work group.
   bool subgroups = false;
+  /// ES: compute programs write images of every format (GL_NV_image_formats), not only of those of ES 3.1 (mayStore()).
+  bool storesAllFormats = false;
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
+
+/// The format of the image that a compute program of ES declares for a field's plane, as a layout qualifier: "rgba32f".
+std::string imageFormat(const program::Field& field);
+/// Whether compute programs of the profile may write images of a format. ES 3.1 has formats of four components, and of one
+/// component of 32 bits.
+bool mayStore(const Profile& profile, std::string_view format);
+/// The same for all planes of elements that do not share texels.
+bool mayStore(const Profile& profile, const program::Element& element);
 
 /// The layout of the output's texels, which determines how sk_index() follows from a texel. drawnTexels() of
 /// region_layout.hpp says what to draw.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "support/devices.hpp"
 
+#include <cstdlib>
 #include <map>
+#include <string>
 #include <utility>
 
 namespace run_tests {
@@ -9,10 +11,12 @@ namespace run_tests {
 sk::Device& device(std::string_view profile, int textureLimit) {
   // Never destroyed: some drivers shut down before our static objects are destroyed.
   static auto& devices = *new std::map<std::pair<std::string, int>, sk::Device>;
+  const char* const compute = std::getenv("SK_TEST_COMPUTE");
   const std::pair key{std::string(profile), textureLimit};
   auto found = devices.find(key);
   if (found == devices.end()) {
-    const sk::DeviceOptions options{.profile = key.first, .textureLimit = textureLimit};
+    const bool isOther = compute != nullptr && profile == "glsl430";
+    const sk::DeviceOptions options{.profile = isOther ? compute : key.first, .textureLimit = textureLimit};
     found = devices.emplace(key, profile == "native" ? sk::Device::native() : sk::Device(options)).first;
   }
   return found->second;

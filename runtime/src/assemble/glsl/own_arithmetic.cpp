@@ -281,7 +281,7 @@ std::string bodyDefinitions(const Profile& profile, std::string_view text) {
 }
 
 std::string_view exactExtensions(const Profile& profile) {
-  const bool hasPrecise = profile.stage == Stage::Compute;  // GLSL 4.30
+  const bool hasPrecise = profile.stage == Stage::Compute;  // GLSL 4.30; ES has the barrier Xor
   return profile.barrier == Barrier::Precise && !hasPrecise ? "#extension GL_ARB_gpu_shader5 : require\n"
                                                             : "";
 }
