@@ -51,10 +51,14 @@ bool mayStore(const Profile& profile, const sk::program::Kernel& kernel) {
   });
 }
 
-/// A comment before fragment programs in place of compute programs.
-std::string noteOfDrawn(const Profile& profile, const sk::program::Kernel& kernel) {
-  return fmt::format("// {} for {}: drawn, because it has no images for all outputs\n", kernel.name,
-                     profile.name);
+/// Fragment programs in place of compute programs, which the comment in the second line then says. It adds no line, because programs
+/// number theirs.
+std::string asDrawn(const Profile& profile, std::string&& programs) {
+  const std::size_t version = programs.find('\n');
+  const std::size_t comment = version == std::string::npos ? version : programs.find('\n', version + 1);
+  if (comment != std::string::npos)
+    programs.insert(comment, fmt::format("; {} has no images for its outputs", profile.name));
+  return std::move(programs);
 }
 
 /// Access to an input whose texels do not correspond to the domain's.
@@ -161,7 +165,7 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
   if (profile.stage == sk::assemble::Stage::Compute) {
     return !profile.es || mayAppend(profile, kernel)
                ? groupListing(profile, kernel)
-               : noteOfDrawn(profile, kernel) + appendListing(drawnProfile(profile), kernel);
+               : asDrawn(profile, appendListing(drawnProfile(profile), kernel));
   }
   sk::assemble::Variant variant = plainVariant(kernel);
   std::vector<std::string> programs;
@@ -314,7 +318,7 @@ bool has(const sk::program::Kernel& kernel, sk::program::Role role) {
 /// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
   if (!mayStore(profile, reduction.fold)) {
-    return noteOfDrawn(profile, reduction.fold) + formListing(drawnProfile(profile), reduction, isScan);
+    return asDrawn(profile, formListing(drawnProfile(profile), reduction, isScan));
   }
   if (isScan) return passListing(profile, reduction, passesOfScan(profile, reduction));
   sk::assemble::RegionLayout input;
@@ -350,7 +354,7 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
   const auto listed = [&](const sk::program::Kernel& one, const sk::assemble::Variant& variant) {
     if (variant.domainPacked || mayStore(profile, one))
       return sk::assemble::kernelProgram(profile, one, variant);
-    return noteOfDrawn(profile, one) + sk::assemble::kernelProgram(drawnProfile(profile), one, variant);
+    return asDrawn(profile, sk::assemble::kernelProgram(drawnProfile(profile), one, variant));
   };
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
   const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);

@@ -46,7 +46,8 @@ struct Profile {
   /// (compiler/transforms/expand_selects.cpp). No sk::Device has such a profile.
   bool webgl = false;
   bool accurate = true;  ///< use our own functions for intrinsics that devices get wrong
-  /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have.
+  /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have, or in ES
+  /// GL_EXT_gpu_shader5 or GL_OES_gpu_shader5, and version 3.10.
   Barrier barrier = Barrier::Xor;
   /// Contraction::Exact: a kernel's own operations are computed as they are written (glsl/own_arithmetic.hpp).
   bool asWritten = true;

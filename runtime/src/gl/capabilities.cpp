@@ -134,7 +134,10 @@ Capabilities readCapabilities() {
   }
   found.blendsFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_EXT_float_blend");
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
-  found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
+  found.hasPrecise = found.api == Api::Gl
+                         ? epoxy_has_gl_extension("GL_ARB_gpu_shader5")
+                         : found.version >= 31 && (epoxy_has_gl_extension("GL_EXT_gpu_shader5") ||
+                                                   epoxy_has_gl_extension("GL_OES_gpu_shader5"));
   found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
   found.hasClipControl = found.api == Api::Gl
                              ? found.version >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control")

@@ -26,7 +26,7 @@ struct Capabilities {
   bool isSoftware = false;  ///< kind is Software
   bool blendsFloats = false;  ///< can blend 32-bit floats
   bool hasDoubles = false;  ///< GLSL has double (GL_ARB_gpu_shader_fp64)
-  bool hasPrecise = false;  ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
+  bool hasPrecise = false;  ///< GLSL 3.30, or ESSL 3.10, has `precise` (GL_ARB_gpu_shader5, or the like)
   bool filtersFloats = false;  ///< can filter 32-bit floats linearly
   /// Has compute programs of GLSL 4.30 or ESSL 3.10, within the limits below, whose work groups of 256 invocations have 32 KiB of
   /// shared memory.

@@ -29,7 +29,7 @@ namespace {
 /// compute programs of ES write images of the formats that every device of 3.1 has.
 gl::Capabilities usedOf(gl::Capabilities&& found, const DeviceChoices& choices) {
   if (found.api != gl::Api::Es) return std::move(found);
-  if (choices.target == Target::Fragment) found.hasCompute = false;
+  if (choices.target == Target::Fragment) found.hasCompute = found.hasPrecise = false;
   if (choices.guaranteedLimits) found.storesAllFormats = false;
   return std::move(found);
 }

@@ -34,7 +34,8 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   // The host of a virtual machine may render in software.
   profile.checksLoops = capabilities.storesFromDraws &&
                         (capabilities.isSoftware || capabilities.kind == gl::RendererKind::Virtual);
-  if (profile.checksLoops && profile.es) profile.version = "#version 310 es";
+  const bool needsEs31 = profile.checksLoops || capabilities.hasPrecise;
+  if (profile.es && needsEs31) profile.version = "#version 310 es";
   profile.subgroups = profile.stage == assemble::Stage::Compute && capabilities.hasSubgroups;
   profile.storesAllFormats = capabilities.storesAllFormats;
   return profile;
@@ -47,7 +48,10 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
   if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
     throw Error(
         fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
-                    capabilities.renderer, capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"),
+                    capabilities.renderer,
+                    capabilities.api == gl::Api::Gl ? "GLSL 3.30"
+                    : capabilities.hasCompute       ? "ESSL 3.10"
+                                                    : "ESSL 3.00"),
         Error::Kind::Device);
   }
   return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);

@@ -327,7 +327,7 @@ TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles
   checkAccepted(programs);
 }
 
-// Only device tests cover `precise`: glslang does not accept it with GL_ARB_gpu_shader5.
+// Only device tests cover `precise` of 3.30: glslang does not accept it with GL_ARB_gpu_shader5.
 TEST_CASE(
     "glslang accepts doubles and their functions in either form, behind other barriers than `precise`") {
   Programs programs("doubles");
@@ -380,6 +380,11 @@ TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the 
                  kernelProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
     if (profile.stage == Stage::Fragment) programs.add(vertexProgram(profile), "vert");
   }
+  Kernel exact = samples::saxpy;
+  exact.usesExactSums = true;
+  Profile es = *findProfile("essl310");
+  es.barrier = sk::Barrier::Precise;
+  programs.add(es, kernelProgram(es, exact, {.access = {{}, {}, {}, {}}}));
   checkAccepted(programs);
 }
 
