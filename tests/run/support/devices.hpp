@@ -27,7 +27,8 @@ namespace run_tests {
 inline constexpr int smallLimits[] = {64, 8};
 
 /// The device with a profile ("glsl330", "glsl430", "essl300", "native") and its own texture limit (0) or a smaller one. The
-/// environment variable SK_TEST_COMPUTE names the profile that takes the place of glsl430: "essl310".
+/// environment variable SK_TEST_COMPUTE names a profile that takes the place of glsl430, "essl310", and leaves out all other devices
+/// of the functions below.
 sk::Device& device(std::string_view profile, int textureLimit = 0);
 
 /// A profile with a texture limit.
