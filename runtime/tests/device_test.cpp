@@ -87,7 +87,8 @@ TEST_CASE("a device is chosen by a part of its name, in any case") {
   CHECK(errorOf([] { Device("gpu:one"); }) ==
         "'gpu:one' names no device; after 'gpu:' comes a number, from 0");
   CHECK(errorOf([] { Device({.profile = "glsl110"}); }) ==
-        "there is no profile 'glsl110'; choose one of glsl330, essl300, glsl430 (option or SK_PROFILE)");
+        "there is no profile 'glsl110'; choose one of glsl330, essl300, glsl430, essl310 "
+        "(option or SK_PROFILE)");
 }
 
 TEST_CASE("a kernel without native code names the way out on a native device") {

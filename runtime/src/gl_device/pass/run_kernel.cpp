@@ -113,16 +113,14 @@ class PlanExecution {
   /// Makes the driver start compiling the program of a pass. False if the program exists already.
   bool start(const Pass& pass) {
     selectOperands(pass);
-    return targets_.empty() ||
-           device_.programs().selected().startKernelProgram(pass.kernel, operands_, call_.domain);
+    return targets_.empty() || programs(pass).startKernelProgram(pass.kernel, operands_, call_.domain);
   }
 
   /// Prepares everything that draw() needs. Throws sk::Error if the driver rejects something.
   void prepare(const Pass& pass) {
     selectOperands(pass);
     if (targets_.empty()) return;
-    preparedPass(device_, device_.programs().selected().kernelProgram(pass.kernel, operands_, call_.domain),
-                 targets_);
+    preparedPass(device_, programs(pass).kernelProgram(pass.kernel, operands_, call_.domain), targets_);
   }
 
   void draw(const Pass& pass) {
@@ -134,6 +132,9 @@ class PlanExecution {
   }
 
  private:
+  ProgramCache& programs(const Pass& pass) const {
+    return device_.programs().selectedFor(pass.kernel, targets_);
+  }
   void selectOperands(const Pass& pass) {
     operands_.clear();
     targets_.clear();
@@ -204,8 +205,10 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
     runPlan(device, *call.plan, {operands.get(), drawn, operands.domain(), operands.layout(), rects.get()},
             [&] { targets.begin(); });
   } else {
-    KernelProgram& program =
-        device.programs().selected().kernelProgram(kernel, operands.get(), operands.domain());
+    ProgramCache& programs = device.programs().selectedFor(kernel, targets.planes());
+    if (call.options.target == Target::Compute && programs.stage() == assemble::Stage::Fragment)
+      device.programs().failForImages(kernel);
+    KernelProgram& program = programs.kernelProgram(kernel, operands.get(), operands.domain());
     const PreparedPass pass = preparedPass(device, program, targets.planes());
     targets.begin();
     runKernel(device, pass, kernel, operands.get(), operands.domain(), rects.get(), targets.planes());
