@@ -69,6 +69,7 @@ class GlDevice final : public DeviceState {
   void makeCurrent() override;
   void checkProcess() const override { context_.handle().checkProcess(); }
   void run(const ResolvedCall& call) override;
+  std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;  // fuse/gl_call.cpp
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;

@@ -93,6 +93,7 @@ class GlPrograms {
 
   MadeKernels& scalarKernels() { return scalarKernels_; }
   MadeKernels& mergeKernels() { return mergeKernels_; }
+  MadeKernels& fusedKernels() { return fusedKernels_; }
   /// Delete all programs of a kernel or reduction that is about to end.
   void forget(const program::Kernel& kernel) noexcept {
     for (auto& [key, cache] : caches_) cache.forget(kernel);
@@ -124,6 +125,7 @@ class GlPrograms {
   StagingPrograms ofStaging_{*this};
   MadeKernels scalarKernels_{*this};
   MadeKernels mergeKernels_{*this};
+  MadeKernels fusedKernels_{*this};
   std::map<ProgramCacheKey, ProgramCache> caches_;
   ProgramCache* selected_ = nullptr;
   ProgramCacheKey selectedKey_;

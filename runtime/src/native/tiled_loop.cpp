@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,13 +14,13 @@
 #include <fmt/format.h>
 
 #include "device/loop_state.hpp"
+#include "device/loop_tiles.hpp"
 #include "device/write_scope.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
 #include "native/thread_pool.hpp"
 #include "native/tiled_call.hpp"
 #include "native/time_tiles.hpp"
-#include "sk/error.hpp"
 #include "sk/native/parallel.hpp"
 #include "support/host_limits.hpp"
 
@@ -76,18 +74,9 @@ class ArrayNumbers {
   std::vector<std::size_t> written_;
 };
 
-/// Bytes of the cache that a thread's tile may take: SK_LOOP_TILES says how many, 0 if it is "off".
+/// Bytes of the cache that a thread's tile may take.
 std::int64_t cacheOfTile() {
-  if (const char* const given = std::getenv("SK_LOOP_TILES")) {
-    const std::string_view text = given;
-    if (text == "off") return 0;
-    std::int64_t bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error == std::errc() && end == text.data() + text.size() && bytes > 0) return bytes;
-    throw Error(fmt::format(
-        "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
-        text));
-  }
+  if (const auto given = givenTileBytes()) return *given;
   // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
   constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
   const std::int64_t found = bytesOfCache(2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops on a GL device. Calls run as ever while a log notes their GL commands, until the streams' textures are again
+// Loops on a GL device. Calls, or passes of several of them (fuse/fused_loop.hpp), run as ever while a log notes their GL commands, until the streams' textures are again
 // where they were before an earlier iteration: swaps, and outputs that are drawn to a second texture, move them. From
 // then on the logs of this cycle are run in place of the calls, each followed by a gate (gl/loop_gate.hpp) in a loop
 // with a condition. Whatever makes the textures differ from what the logs expect begins a new cycle.
@@ -20,6 +20,7 @@
 #include "gl/command_log.hpp"
 #include "gl/commands.hpp"
 #include "gl/loop_gate.hpp"
+#include "gl_device/fuse/fused_loop.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/program/variant.hpp"
@@ -38,6 +39,7 @@ class ReplayedLoop final : public LoopRunner {
  public:
   explicit ReplayedLoop(GlDevice& device)
       : device_(device),
+        fused_(device),
         hasGate_(device.capabilities.hasCompute &&
                  (device.traits.endsLoops || device.target == Target::Compute)) {}
   ~ReplayedLoop() override { drop(); }
@@ -52,8 +54,9 @@ class ReplayedLoop final : public LoopRunner {
 
   std::string plan(LoopState& loop) override {
     return fmt::format(
-        "{} calls, whose OpenGL commands are recorded and repeated{}\n", loop.calls().size(),
-        mayReplay() ? "" : ", which tracing, labels or calls with changing commands prevent here");
+               "{} calls, whose OpenGL commands are recorded and repeated{}\n", loop.calls().size(),
+               mayReplay() ? "" : ", which tracing, labels or calls with changing commands prevent here") +
+           fused_.plan(loop);
   }
 
   std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) override {
@@ -130,10 +133,10 @@ class ReplayedLoop final : public LoopRunner {
   void step(LoopState& loop) {
     if (!mayReplay()) {
       drop();
-      return loop.runOnce();
+      return fused_.runOnce(loop);
     }
     if (isClosed_ || isStale() || (!cycle_.empty() && !areAt(loop, last_))) drop();
-    if (!std::exchange(hasRun_, true)) return loop.runOnce();
+    if (!std::exchange(hasRun_, true)) return fused_.runOnce(loop);
     Iteration& iteration = cycle_.emplace_back();
     device_.bound().keep(iteration.log);
     try {
@@ -165,7 +168,7 @@ class ReplayedLoop final : public LoopRunner {
       count(iteration.passes);
     };
     try {
-      loop.runOnce();
+      fused_.runOnce(loop);
     } catch (...) {
       end();
       throw;
@@ -380,6 +383,7 @@ class ReplayedLoop final : public LoopRunner {
   }
 
   GlDevice& device_;
+  FusedLoop fused_;
   std::deque<Iteration> cycle_;
   Places last_;  ///< after the last iteration of cycle_
   bool isClosed_ = false;  ///< last_ is before cycle_.front()
