@@ -155,14 +155,15 @@ TEST_CASE("a plan says which calls run in one pass, and why others do not") {
     for (auto* stream : {&u, &v, &w}) stream->fill(0.5f);
     bytes.fill(sk::unorm8(0.5f));
     const auto planOf = [&](auto&& calls) { return device.record(calls).plan(); };
-    CHECK_THAT(planOf([&] {
-                 fused::ease(u, u);
-                 fused::others::ease(u, u);
-                 fused::where(u, u);
-                 fused::scaled(0.5f, u, u);
-               }),
-               Contains("fused::ease + fused::others::ease + fused::where + fused::scaled: in one pass, 32768 "
-                        "bytes instead of 131072"));
+    CHECK_THAT(
+        planOf([&] {
+          fused::ease(u, u);
+          fused::others::ease(u, u);
+          fused::where(u, u);
+          fused::scaled(0.5f, u, u);
+        }),
+        Contains("fused::ease + fused::others::ease + fused::where + fused::scaled: in one pass, 32768 "
+                 "bytes instead of 131072"));
     CHECK_THAT(planOf([&] {
                  fused::ease(u, v);
                  fused::spread(v, u, w);

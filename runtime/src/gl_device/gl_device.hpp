@@ -10,6 +10,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/condition.hpp"
+#include "assemble/program/tile_program.hpp"
 #include "device/device_state.hpp"
 #include "gl/open_context.hpp"
 #include "gl/queue_points.hpp"
@@ -95,6 +96,8 @@ class GlDevice final : public DeviceState {
     return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
   }
 
+  /// Runs a kernel that computes its domain by tiles. The call has no plan and no box.
+  void runTiles(const ResolvedCall& call, const assemble::TilePlan& plan);
   /// run() without GlPrograms::checkOptions(), whose tests of the device call this.
   void runUnchecked(const ResolvedCall& call);
   void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,

@@ -21,8 +21,8 @@ std::vector<std::pair<std::string, std::string>> accessorsOf(const Kernel& kerne
     const Parameter& parameter = kernel.parameters[i];
     const auto rename = [&](bool isUsed, std::string_view function) {
       if (!isUsed) return;
-      const std::string ours = symbols[i].empty() ? fmt::format("sk_{}", function)
-                                                  : fmt::format("sk_{}_{}", function, symbols[i]);
+      const std::string ours =
+          symbols[i].empty() ? fmt::format("sk_{}", function) : fmt::format("sk_{}_{}", function, symbols[i]);
       macros.emplace_back(fmt::format("sk_{}_{}", function, parameter.symbol), ours);
     };
     rename(parameter.usesIndex, "index");

@@ -25,7 +25,14 @@ namespace {
 /// Drivers take longer than proportionally to compile large programs.
 constexpr std::uint32_t greatestWeight = 2 * assemble::greatestPackedWeight;
 
-/// The value of a spec parameter as an argument, which compilers know.
+/// Whether two parameters read their streams by the same functions.
+bool areReadAlike(const Parameter& a, const Parameter& b) {
+  return a.role == b.role && a.element == b.element && a.held == b.held && a.rank == b.rank &&
+         a.boundary == b.boundary && a.border == b.border && a.filter == b.filter && a.usesNear == b.usesNear;
+}
+
+}  // namespace
+
 std::string specValue(const Parameter& parameter, std::uint32_t bits) {
   namespace mark = program::mark;
   const program::Scalar scalar = parameter.element->fields.front().scalar;
@@ -39,14 +46,6 @@ bool haveSameOptions(CallOptions a, CallOptions b) {
   a.over = b.over = {};
   return a == b;
 }
-
-/// Whether two parameters read their streams by the same functions.
-bool areReadAlike(const Parameter& a, const Parameter& b) {
-  return a.role == b.role && a.element == b.element && a.held == b.held && a.rank == b.rank &&
-         a.boundary == b.boundary && a.border == b.border && a.filter == b.filter && a.usesNear == b.usesNear;
-}
-
-}  // namespace
 
 std::int64_t elementBytes(const StreamRegion& region) {
   return region.shape.size() * static_cast<std::int64_t>(region.stream->element->size);
@@ -113,8 +112,8 @@ std::string FusedCalls::symbolOf(std::size_t parameter) const {
 
 FusedCalls::Outer& FusedCalls::addOuter(const ResolvedCall& call, std::size_t i) {
   const Parameter& parameter = call.kernel.parameters[i];
-  Outer& outer = outers_.emplace_back(
-      Outer{parameter, symbolOf(i), std::string(parameter.name), call.arguments[i]});
+  Outer& outer =
+      outers_.emplace_back(Outer{parameter, symbolOf(i), std::string(parameter.name), call.arguments[i]});
   outer.parameter.neededIf = {};
   outer.parameter.halo = {};
   return outer;
@@ -249,8 +248,8 @@ std::shared_ptr<MadeKernel> FusedCalls::make() const {
     parameter.element = &made->own(*parameter.element);
     made->body += describeParameter(parameter);
     if (parameter.role != Role::Gather) {
-      list += fmt::format("{}{}{} {}", list.empty() ? "" : ", ",
-                          parameter.role == Role::Output ? "out " : "", parameter.element->glsl, symbol);
+      list += fmt::format("{}{}{} {}", list.empty() ? "" : ", ", parameter.role == Role::Output ? "out " : "",
+                          parameter.element->glsl, symbol);
     }
     made->parameters.push_back(parameter);
   };

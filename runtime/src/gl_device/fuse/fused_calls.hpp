@@ -91,6 +91,12 @@ std::string describeParameter(const program::Parameter& parameter);
 void addNeeds(program::Kernel& whole, std::vector<program::IntrinsicUse>& intrinsics,
               const program::Kernel& part);
 
+/// The value of a spec parameter as an argument, which compilers know.
+std::string specValue(const program::Parameter& parameter, std::uint32_t bits);
+
+/// Whether programs of both may be one, as far as options say.
+bool haveSameOptions(CallOptions a, CallOptions b);
+
 /// The bytes of a region's elements.
 std::int64_t elementBytes(const StreamRegion& region);
 

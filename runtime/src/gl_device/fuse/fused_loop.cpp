@@ -76,8 +76,8 @@ std::string FusedLoop::plan(LoopState& loop) {
                           group.fused->bytes(), group.fused->bytesOfCalls());
     }
     for (std::size_t i = group.begin; i < group.end && !group.fused; ++i) {
-      text += fmt::format("{}: by itself{}{}\n", loop.calls()[i]->name(), whyNot_[i].empty() ? "" : ", since ",
-                          whyNot_[i]);
+      text += fmt::format("{}: by itself{}{}\n", loop.calls()[i]->name(),
+                          whyNot_[i].empty() ? "" : ", since ", whyNot_[i]);
     }
   }
   return text;
