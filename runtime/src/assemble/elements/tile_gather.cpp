@@ -56,17 +56,12 @@ class TileGatherText {
     program_.function(fmt::format("{} sk_at_{}(ivec2 sk_i)", gather_.element->glsl, gather_.symbol), lines);
   }
 
-  std::string defineNear() {
+  void defineNear() {
     defineTexel();
-    std::vector<std::string> loads;
     for (int y = -window_.reachInY(); y <= window_.reachInY(); ++y) {
-      for (int x = -window_.reachInX(); x <= window_.reachInX(); ++x) {
+      for (int x = -window_.reachInX(); x <= window_.reachInX(); ++x)
         program_.variable(packedType(gather_), window_.texelName(x, y));
-        loads.push_back(fmt::format("{} = sk_texel_at_{}(ivec2({}, {}));", window_.texelName(x, y),
-                                    gather_.symbol, x, y));
-      }
     }
-    program_.function(fmt::format("void sk_load_{}()", gather_.symbol), loads);
     std::vector<std::string> lines = {
         fmt::format("int sk_x = {} + sk_d.x, sk_c = sk_x >> 2;", domain_.lane())};
     if (gather_.boundary == Boundary::Border) {
@@ -79,7 +74,6 @@ class TileGatherText {
     window_.chooseTexel(packedType(gather_), lines);
     lines.push_back(fmt::format("return {};", fetchedComponent(program_, gather_, "sk_v", "sk_x & 3")));
     program_.function(fmt::format("{} sk_near_{}(ivec2 sk_d)", gather_.element->glsl, gather_.symbol), lines);
-    return fmt::format("sk_load_{}();", gather_.symbol);
   }
 
  private:
@@ -136,11 +130,11 @@ class TileGatherText {
 
 }  // namespace
 
-std::string defineTileGather(ProgramText& program, DomainText& domain, const Parameter& gather,
+void defineTileGather(ProgramText& program, DomainText& domain, const Parameter& gather,
                              const TileArray& array) {
   TileGatherText text(program, domain, gather, array);
   if (gather.usesAt) text.defineAt();
-  return gather.usesNear ? text.defineNear() : std::string();
+  if (gather.usesNear) text.defineNear();
 }
 
 }  // namespace sk::assemble

@@ -20,11 +20,12 @@ struct TileArray {
   std::array<int, 2> texels;  ///< columns and rows
 };
 
-/// Defines the functions for a gather of rank 2 and of one scalar. Its neighbours are at constant offsets. Returns the statement by
-/// which main() fetches the texels around an invocation's before the body runs; empty if the body needs none.
+/// Defines the functions for a gather of rank 2 and of one scalar. Its neighbours are at constant offsets: before the body runs,
+/// main() sets the variables of a TexelWindow, by `sk_texel_at_P(ivec2 d)`, which fetches the texel at an offset from the
+/// invocation's, or by what it holds itself.
 /// Programs declare, and main() sets: `sk_origin`, the stream's texel that is the tile's first one; `sk_spot`, the texel of the
 /// invocation in the tile; `sk_low` and `sk_high`, the first and the last texel of the stream that are in the tile.
-std::string defineTileGather(ProgramText& program, DomainText& domain, const program::Parameter& gather,
+void defineTileGather(ProgramText& program, DomainText& domain, const program::Parameter& gather,
                              const TileArray& array);
 
 }  // namespace sk::assemble

@@ -10,20 +10,18 @@
 #include "assemble/elements/arguments.hpp"
 #include "assemble/elements/domain.hpp"
 #include "assemble/elements/planes.hpp"
+#include "assemble/elements/texel_window.hpp"
 #include "assemble/elements/tile_gather.hpp"
 #include "assemble/glsl/program_text.hpp"
 
 namespace sk::assemble {
 
+using program::Boundary;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
 
 namespace {
-
-/// The columns that two rows of a tile in shared memory are longer than a tile: the invocations that read 2 x 4 texels at a time then
-/// find them in different banks.
-constexpr int spareColumns = 2;
 
 class TileText {
  public:
@@ -40,18 +38,19 @@ class TileText {
 
   std::string write() {
     declare();
-    for (std::size_t c = 0; c < plan_.calls.size(); ++c) loads_.push_back(defineGathers(plan_.calls[c]));
+    for (const TileCall& call : plan_.calls) defineGathers(call);
     begin();
     load();
     line(fmt::format("for (int sk_step = 1; sk_step <= {}; ++sk_step) {{", plan_.iterations));
     indent_ = "  ";
-    for (std::size_t c = 0; c < plan_.calls.size(); ++c) compute(c);
+    shareCarried();
+    for (const TileCall& call : plan_.calls) compute(call);
     carry();
     indent_.clear();
     line("}");
     store();
-    program_.runFrom(fmt::format("\nlayout(local_size_x = {}) in;\n\nvoid main() {{\n{}}}\n",
-                                 plan_.invocations, main_));
+    program_.runFrom(
+        fmt::format("\nlayout(local_size_x = {}) in;\n\nvoid main() {{\n{}}}\n", plan_.invocations, main_));
     return program_.finish(profile_,
                            fmt::format("{} for {}: tiles of {} x {} texels, {} iterations", kernel_.name,
                                        profile_.name, plan_.stored()[0], plan_.stored()[1], plan_.iterations),
@@ -90,7 +89,7 @@ class TileText {
       const int value = static_cast<int>(v);
       if (isNear(value))
         program_.variable(fmt::format("shared {}", typeOf(value)),
-                          fmt::format("{}[{}][{}]", arrayOf(value), rows(), columns() + spareColumns));
+                          fmt::format("{}[{}][{}]", arrayOf(value), rows(), columns()));
     }
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       const Parameter& parameter = kernel_.parameters[i];
@@ -116,21 +115,21 @@ class TileText {
     return fmt::format("ivec2({0}.x >> 2, {0}.y)", shape);
   }
 
-  /// Returns the statements that fetch what the call's gathers read around a texel.
-  std::vector<std::string> defineGathers(const TileCall& call) {
-    std::vector<std::string> loads;
+  void defineGathers(const TileCall& call) {
     for (std::size_t i = 0; i < call.kernel->parameters.size(); ++i) {
       if (call.kernel->parameters[i].role != Role::Gather) continue;
-      Parameter& gather = gathers_.emplace_back(call.kernel->parameters[i]);
-      gather.symbol = call.symbols[i];
+      const Parameter gather = gatherOf(call, i);
       if (gather.usesExtent)
         program_.function(fmt::format("ivec4 sk_extent_{}()", gather.symbol),
                           {fmt::format("return {};", domain_.seenShape())});
-      const std::string load =
-          defineTileGather(program_, domain_, gather, {arrayOf(call.values[i]), {columns(), rows()}});
-      if (!load.empty()) loads.push_back(load);
+      defineTileGather(program_, domain_, gather, {arrayOf(call.values[i]), {columns(), rows()}});
     }
-    return loads;
+  }
+
+  static Parameter gatherOf(const TileCall& call, std::size_t i) {
+    Parameter gather = call.kernel->parameters[i];
+    gather.symbol = call.symbols[i];
+    return gather;
   }
 
   void begin() {
@@ -141,15 +140,15 @@ class TileText {
     line(fmt::format("ivec2 sk_n = {};", texelsOfDomain()));
     line("sk_low = max(ivec2(0), -sk_origin);");
     line(fmt::format("sk_high = min(ivec2({}, {}), sk_n - sk_origin) - 1;", columns(), rows()));
-    // eight invocations after one another fetch 2 x 4 texels, a line of the cache
+    // Eight invocations after one another read neighbouring texels, which are in different banks of shared memory. An invocation
+    // has texels below each other, and so holds most of what it reads above and below them.
     line("int sk_i = int(gl_LocalInvocationIndex), sk_w = sk_i >> 5;");
-    line(
-        fmt::format("ivec2 sk_mine = ivec2((sk_i & 1) | (sk_i >> 2 & 6) | sk_w % {0} << 3, (sk_i >> 1 & 3) | "
-                    "sk_w / {0} << 2);",
-                    columns() / 8));
+    line(fmt::format(
+        "ivec2 sk_mine = ivec2((sk_i & 7) | sk_w % {0} << 3, ((sk_i >> 3 & 3) | sk_w / {0} << 2) * {1});",
+        columns() / 8, texelsOfInvocation()));
   }
 
-  std::string spotOf(int k) const { return fmt::format("sk_mine + ivec2(0, {})", k * rowsAtOnce()); }
+  static std::string spotOf(int k) { return fmt::format("sk_mine + ivec2(0, {})", k); }
 
   void load() {
     forEachTexel([&](int k) {
@@ -167,13 +166,21 @@ class TileText {
         line(fmt::format("{0} {1} = {0}(0);", typeOf(value), held(value, k)));
       }
     });
-    bool isAnyNear = false;
+  }
+
+  /// Gives the work group what calls read at neighbours.
+  void shareCarried() {
+    if (std::find(plan_.isNear.begin(), plan_.isNear.begin() + static_cast<std::ptrdiff_t>(plan_.carried),
+                  true) == plan_.isNear.begin() + static_cast<std::ptrdiff_t>(plan_.carried))
+      return;
+    line("if (sk_step > 1) {");  // all have read what is there
+    line("  memoryBarrierShared();");
+    line("  barrier();");
+    line("}");
     for (std::size_t c = 0; c < plan_.carried; ++c) {
-      if (!plan_.isNear[c]) continue;
-      share(static_cast<int>(c));
-      isAnyNear = true;
+      if (plan_.isNear[c]) share(static_cast<int>(c));
     }
-    if (isAnyNear) synchronize();
+    synchronize();
   }
 
   std::string fetched(std::size_t carried) {
@@ -190,44 +197,53 @@ class TileText {
   /// Stores what invocations hold of a value to shared memory.
   void share(int value) {
     forEachTexel([&](int k) {
-      line(fmt::format("{}[sk_mine.y + {}][sk_mine.x] = {};", arrayOf(value), k * rowsAtOnce(), held(value, k)));
+      line(fmt::format("{}[sk_mine.y + {}][sk_mine.x] = {};", arrayOf(value), k, held(value, k)));
     });
   }
 
-  /// Computes a call for the texels that later calls need.
-  void compute(std::size_t number) {
-    const TileCall& call = plan_.calls[number];
-    const std::array<int, 2> reach = plan_.reach(), halo = plan_.halo();
-    std::array<int, 2> after{};
-    for (std::size_t c = number + 1; c < plan_.calls.size(); ++c) {
-      after[0] += plan_.calls[c].reach[0];
-      after[1] += plan_.calls[c].reach[1];
-    }
-    line("{");
-    line(fmt::format("  ivec2 sk_need = ({} - sk_step) * ivec2({}, {}) + ivec2({}, {});", plan_.iterations,
-                     reach[0], reach[1], after[0], after[1]));
-    line(fmt::format("  ivec2 sk_from = ivec2({}, {}) - ivec2((sk_need.x + 3) >> 2, sk_need.y);", halo[0],
-                     halo[1]));
-    line(fmt::format("  ivec2 sk_to = ivec2({}, {}) - sk_from;", columns(), rows()));
+  /// Computes a call. What depends on texels outside of the tile is wrong, and nothing that is stored depends on it.
+  void compute(const TileCall& call) {
     forEachTexel([&](int k) {
-      line(fmt::format("  sk_enter({});", spotOf(k)));
-      line(fmt::format(
-          "  if ({}all(greaterThanEqual(sk_spot, sk_from)) && all(lessThan(sk_spot, sk_to))) {{",
-          plan_.isPeriodic ? "" : fmt::format("sk_inside{} && ", k)));
-      for (const std::string& load : loads_[number]) line("    " + load);
-      for (int lane = 0; lane < lanes; ++lane) {
-        if (domain_.usesLane()) line(fmt::format("    sk_lane = {};", lane));
-        line("    " + sk::assemble::call(call.entry, argumentsOf(call, k, "xyzw"[lane]), "        ") + ";");
+      line(fmt::format("sk_enter({});", spotOf(k)));
+      for (std::size_t i = 0; i < call.kernel->parameters.size(); ++i) {
+        const Parameter& parameter = call.kernel->parameters[i];
+        if (parameter.role == Role::Gather && parameter.usesNear)
+          fillWindow(gatherOf(call, i), call.values[i], k);
       }
-      line("  }");
+      for (int lane = 0; lane < lanes; ++lane) {
+        if (domain_.usesLane()) line(fmt::format("sk_lane = {};", lane));
+        line(sk::assemble::call(call.entry, argumentsOf(call, k, "xyzw"[lane]), "      ") + ";");
+      }
     });
-    line("}");
     for (std::size_t i = 0; i < call.kernel->parameters.size(); ++i) {
       if (call.kernel->parameters[i].role != Role::Output || !isNear(call.values[i])) continue;
       synchronize();  // all have read what was there
       share(call.values[i]);
       synchronize();
     }
+  }
+
+  /// Fetches the texels around texel k, unless the invocation holds them.
+  void fillWindow(const Parameter& gather, int value, int k) {
+    const TexelWindow window(gather);
+    for (int y = -window.reachInY(); y <= window.reachInY(); ++y) {
+      for (int x = -window.reachInX(); x <= window.reachInX(); ++x) {
+        const bool isHeld = x == 0 && k + y >= 0 && k + y < texelsOfInvocation() &&
+                            (y == 0 || gather.boundary != Boundary::Mirror);
+        line(fmt::format("{} = {};", window.texelName(x, y),
+                         isHeld ? heldNear(gather.boundary, value, k, y)
+                                : fmt::format("sk_texel_at_{}(ivec2({}, {}))", gather.symbol, x, y)));
+      }
+    }
+  }
+
+  /// The texel y rows below texel k, or the nearest one in the stream if that is what the boundary mode reads.
+  std::string heldNear(Boundary boundary, int value, int k, int y) const {
+    std::string text;
+    const int back = y < 0 ? 1 : -1;
+    for (; boundary == Boundary::Clamp && y != 0; y += back)
+      text += fmt::format("sk_inside{} ? {} : ", k + y, held(value, k + y));
+    return text + held(value, k + y);
   }
 
   static std::vector<std::string> argumentsOf(const TileCall& call, int k, char component) {
@@ -245,14 +261,12 @@ class TileText {
   /// Gives the streams the values that they have after an iteration.
   void carry() {
     std::vector<int> changed;
-    bool isAnyNear = false;
     for (std::size_t c = 0; c < plan_.carried; ++c) {
-      if (plan_.next[c] == static_cast<int>(c)) continue;
-      changed.push_back(static_cast<int>(c));
-      isAnyNear = isAnyNear || plan_.isNear[c];
+      if (plan_.next[c] != static_cast<int>(c)) changed.push_back(static_cast<int>(c));
     }
     const auto isRotated = [&](int value) {  // another stream takes what it has
-      return std::ranges::any_of(changed, [&](int c) { return plan_.next[static_cast<std::size_t>(c)] == value; });
+      return std::ranges::any_of(changed,
+                                 [&](int c) { return plan_.next[static_cast<std::size_t>(c)] == value; });
     };
     forEachTexel([&](int k) {
       for (const int c : changed) {
@@ -261,15 +275,10 @@ class TileText {
       for (const int c : changed) {
         const int from = plan_.next[static_cast<std::size_t>(c)];
         const bool isOld = std::ranges::find(changed, from) != changed.end();
-        line(fmt::format("{} = {};", held(c, k), isOld ? fmt::format("sk_old{}_{}", from, k) : held(from, k)));
+        line(
+            fmt::format("{} = {};", held(c, k), isOld ? fmt::format("sk_old{}_{}", from, k) : held(from, k)));
       }
     });
-    if (!isAnyNear) return;
-    synchronize();
-    for (const int c : changed) {
-      if (isNear(c)) share(c);
-    }
-    synchronize();
   }
 
   void store() {
@@ -278,9 +287,10 @@ class TileText {
       line("{");
       line(fmt::format("  ivec2 sk_s = {} - ivec2({}, {}), sk_at = sk_first + sk_s;", spotOf(k), halo[0],
                        halo[1]));
-      line(fmt::format("  if (all(lessThan(uvec2(sk_s), uvec2({}, {}))) && all(lessThan(sk_at - sk_rect.xy, sk_rect.zw))) "
-                       "{{",
-                       stored[0], stored[1]));
+      line(fmt::format(
+          "  if (all(lessThan(uvec2(sk_s), uvec2({}, {}))) && all(lessThan(sk_at - sk_rect.xy, sk_rect.zw))) "
+          "{{",
+          stored[0], stored[1]));
       std::size_t output = 0;
       for (std::size_t c = 0; c < plan_.carried; ++c) {
         if (plan_.next[c] == static_cast<int>(c)) continue;
@@ -303,8 +313,6 @@ class TileText {
   ProgramText program_;
   DomainText domain_;
   std::deque<Parameter> written_;  ///< of packed texels
-  std::deque<Parameter> gathers_;  ///< of the calls, with their symbols
-  std::vector<std::vector<std::string>> loads_;  ///< of each call
   std::string main_, indent_;
 };
 
@@ -326,7 +334,7 @@ std::array<int, 2> TilePlan::halo() const {
 
 std::size_t TilePlan::sharedBytes() const {
   const auto arrays = static_cast<std::size_t>(std::ranges::count(isNear, true));
-  return arrays * static_cast<std::size_t>((texels[0] + spareColumns) * texels[1]) * lanes * sizeof(float);
+  return arrays * static_cast<std::size_t>(texels[0] * texels[1]) * lanes * sizeof(float);
 }
 
 std::string describe(const TilePlan& plan) {
