@@ -209,5 +209,32 @@ TEST_CASE("a pass reads and writes each stream once") {
   }
 }
 
+/// Without SK_LOOP_TILES, which this program does not get.
+TEST_CASE(
+    "the first iterations of a loop find out whether tiles are faster, and leave the bits of its calls") {
+  sk::Device& device = run_tests::device("glsl430");
+  const sk::Shape shape{256, 256};
+  auto u = device.stream<float>(shape), v = device.stream<float>(shape);
+  auto a = device.stream<float>(shape), b = device.stream<float>(shape);
+  for (auto* stream : {&u, &a}) stream->write(drawn(shape.size(), 3));
+  sk::Loop loop = device.record([&] {
+    fused::smooth(a, b);
+    std::swap(a, b);
+  });
+  CHECK_THAT(loop.plan(),
+             Contains("fused::smooth: the first iterations find out whether tiles of several are faster"));
+  for (const int times : {5, 99, 12, 13, 150, 99}) {
+    for (int i = 0; i < times; ++i) {
+      fused::smooth(u, v);
+      std::swap(u, v);
+    }
+    loop.repeat(times);
+    REQUIRE(haveSameBits(a.read(), u.read()));
+    REQUIRE(haveSameBits(b.read(), v.read()));
+  }
+  CHECK_THAT(loop.plan(),
+             Contains("iterations at once") || Contains("no tiles of several iterations: they take"));
+}
+
 }  // namespace
 }  // namespace run_tests

@@ -90,8 +90,8 @@ TEST_CASE("loops of any calls in tiles on a GPU compute the bits of their calls 
     std::string named;
     for (const Drawn& call : calls)
       named += std::to_string(call.kernel) + "(" + std::to_string(call.a) + std::to_string(call.b) + ") ";
-    INFO("trial " << trial << (wraps ? ": wrapping kernels " : ": kernels ") << named << "over " << shape[0] << " x "
-                  << shape[1] << ", " << times << " + " << again << " iterations");
+    INFO("trial " << trial << (wraps ? ": wrapping kernels " : ": kernels ") << named << "over " << shape[0]
+                  << " x " << shape[1] << ", " << times << " + " << again << " iterations");
     Fields one = fieldsOf(device, shape), loop = fieldsOf(device, shape);
     for (int i = 0; i < times + again; ++i) {
       for (const Drawn& call : calls) run(call, wraps, one);

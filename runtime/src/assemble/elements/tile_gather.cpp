@@ -33,8 +33,7 @@ class TileGatherText {
       case Boundary::Mirror:
         program_.require(Function::Mirror);
         lines.push_back(fmt::format("ivec2 sk_n = {};", shape));
-        lines.emplace_back(
-            "ivec2 sk_p = ivec2(sk_mirror(0, sk_i.x, sk_n.x), sk_mirror(0, sk_i.y, sk_n.y));");
+        lines.emplace_back("ivec2 sk_p = ivec2(sk_mirror(0, sk_i.x, sk_n.x), sk_mirror(0, sk_i.y, sk_n.y));");
         break;
       case Boundary::Border:
         lines.push_back(fmt::format("if (any(greaterThanEqual(uvec2(sk_i), uvec2({})))) return {};", shape,
@@ -51,8 +50,8 @@ class TileGatherText {
     }
     lines.push_back(
         fmt::format("sk_p = clamp(sk_p, ivec2(0), ivec2({}, {}));", lanes * columns() - 1, rows() - 1));
-    lines.push_back(fmt::format("return {};",
-                                fetchedComponent(program_, gather_, texel("sk_p.y", "sk_p.x >> 2"), "sk_p.x & 3")));
+    lines.push_back(fmt::format(
+        "return {};", fetchedComponent(program_, gather_, texel("sk_p.y", "sk_p.x >> 2"), "sk_p.x & 3")));
     program_.function(fmt::format("{} sk_at_{}(ivec2 sk_i)", gather_.element->glsl, gather_.symbol), lines);
   }
 
@@ -68,8 +67,8 @@ class TileGatherText {
       const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
       lines.push_back(fmt::format("ivec2 sk_n = ivec2({0}.x >> 2, {0}.y), sk_p = {1} + ivec2(sk_c, sk_d.y);",
                                   shape, program_.texel()));
-      lines.push_back(fmt::format("if (any(greaterThanEqual(uvec2(sk_p), uvec2(sk_n)))) return {};",
-                                  gather_.border));
+      lines.push_back(
+          fmt::format("if (any(greaterThanEqual(uvec2(sk_p), uvec2(sk_n)))) return {};", gather_.border));
     }
     window_.chooseTexel(packedType(gather_), lines);
     lines.push_back(fmt::format("return {};", fetchedComponent(program_, gather_, "sk_v", "sk_x & 3")));
@@ -131,7 +130,7 @@ class TileGatherText {
 }  // namespace
 
 void defineTileGather(ProgramText& program, DomainText& domain, const Parameter& gather,
-                             const TileArray& array) {
+                      const TileArray& array) {
   TileGatherText text(program, domain, gather, array);
   if (gather.usesAt) text.defineAt();
   if (gather.usesNear) text.defineNear();

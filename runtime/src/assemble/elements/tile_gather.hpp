@@ -26,6 +26,6 @@ struct TileArray {
 /// Programs declare, and main() sets: `sk_origin`, the stream's texel that is the tile's first one; `sk_spot`, the texel of the
 /// invocation in the tile; `sk_low` and `sk_high`, the first and the last texel of the stream that are in the tile.
 void defineTileGather(ProgramText& program, DomainText& domain, const program::Parameter& gather,
-                             const TileArray& array);
+                      const TileArray& array);
 
 }  // namespace sk::assemble

@@ -39,7 +39,8 @@ struct TilePlan {
   /// Values are numbered: first those of the streams before an iteration, then what calls compute.
   std::size_t carried = 0;  ///< the number of such streams
   std::vector<int> next;  ///< for each of them, the value that it has after an iteration
-  std::vector<const program::Element*> elements;  ///< of each value: one scalar whose texels need no conversion
+  std::vector<const program::Element*>
+      elements;  ///< of each value: one scalar whose texels need no conversion
   std::vector<bool> isNear;  ///< for each value, whether a gather reads it
   std::vector<TileCall> calls;
 
@@ -48,9 +49,7 @@ struct TilePlan {
   /// Texels around a tile on each side.
   std::array<int, 2> halo() const;
   /// Texels that a work group stores.
-  std::array<int, 2> stored() const {
-    return {texels[0] - 2 * halo()[0], texels[1] - 2 * halo()[1]};
-  }
+  std::array<int, 2> stored() const { return {texels[0] - 2 * halo()[0], texels[1] - 2 * halo()[1]}; }
   /// Bytes of shared memory.
   std::size_t sharedBytes() const;
 };

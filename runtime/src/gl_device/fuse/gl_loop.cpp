@@ -62,7 +62,7 @@ class GlLoop final : public LoopRunner {
                        byIteration_->mayReplay()
                            ? ""
                            : ", which tracing, labels or calls with changing commands prevent here") +
-           planOfTiles() + fused_.plan(loop);
+           planOfTiles() + (chosen_ != nullptr ? "iterations that are left over:\n" : "") + fused_.plan(loop);
   }
 
  private:
@@ -89,7 +89,8 @@ class GlLoop final : public LoopRunner {
     if (whyNot_.empty() && !given) whyNot_ = whyNotWorthwhile(loop);
     if (whyNot_.empty()) {
       const std::size_t most = iteration_->groupBytes();
-      addTiles(iteration_->plans(given ? std::min(most, static_cast<std::size_t>(*given)) : most), given ? 1 : mostTried);
+      addTiles(iteration_->plans(given ? std::min(most, static_cast<std::size_t>(*given)) : most),
+               given ? 1 : mostTried);
       if (tried_.empty()) whyNot_ = "a tile and all that is around it take too much of a work group's memory";
       if (given && !tried_.empty()) chosen_ = &tried_.front();
     }
@@ -97,7 +98,8 @@ class GlLoop final : public LoopRunner {
   }
 
   std::string whyNotWorthwhile(const LoopState& loop) const {
-    if (device_.isSoftware()) return "a renderer in software has no faster memory for them";
+    if (device_.isSoftware() && device_.target != Target::Compute)
+      return "a renderer in software has no faster memory for them";
     const bool isSmall = std::ranges::all_of(
         loop.used(), [](const LoopState::Used& used) { return used.shape.size() < fewElements; });
     return isSmall ? "its streams are small" : "";
@@ -136,7 +138,8 @@ class GlLoop final : public LoopRunner {
   }
 
   static bool hasLost(const LoopState& loop) {
-    return std::ranges::any_of(loop.used(), [](const LoopState::Used& used) { return used.stream->isLost(); });
+    return std::ranges::any_of(loop.used(),
+                               [](const LoopState::Used& used) { return used.stream->isLost(); });
   }
 
   void refuse(Tiles& tiles) {
@@ -155,14 +158,14 @@ class GlLoop final : public LoopRunner {
   std::int64_t tryOne(LoopState& loop) {
     const std::size_t turn = turn_++;
     if (turn == 0) {
-      bestByIteration_ = std::min(bestByIteration_, seconds([&] { byIteration_->run(loop, timedIterations); }));
+      bestByIteration_ =
+          std::min(bestByIteration_, seconds([&] { byIteration_->run(loop, timedIterations); }));
       return timedIterations;
     }
     Tiles& tiles = tried_[turn - 1];
     const std::size_t before = tried_.size();
     std::int64_t ran = 0;
-    const double taken =
-        seconds([&] { ran = runTiles(loop, tiles, timedIterations / iterationsOf(tiles)); });
+    const double taken = seconds([&] { ran = runTiles(loop, tiles, timedIterations / iterationsOf(tiles)); });
     if (tried_.size() < before) {
       --turn_;
     } else if (ran == 0) {
@@ -210,7 +213,8 @@ class GlLoop final : public LoopRunner {
     const assemble::TilePlan& plan = chosen_->call->plan();
     const std::string measured = gain_ > 0 ? fmt::format(", {:.2f} times as fast", gain_) : "";
     return fmt::format(
-        "{}: in tiles of {} rows x {} columns, {} iterations at once, {:.1f} times fewer bytes from memory{}\n",
+        "{}: in tiles of {} rows x {} columns, {} iterations at once, {:.1f} times fewer bytes from "
+        "memory{}\n",
         iteration_->names(), plan.stored()[1], 4 * plan.stored()[0], plan.iterations,
         iteration_->bytesOfCalls() / iteration_->bytesOfTiles(plan), measured);
   }

@@ -103,7 +103,8 @@ std::string TiledIteration::findReach(const ResolvedCall& call, std::size_t i, T
   if (gather.usesNear && (gather.reach < 0 || gather.reach > farthestNeighbour))
     return fmt::format("neighbours of '{}' are more than {} elements away", gather.name, farthestNeighbour);
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto limits = haloLimits(call.kernel, call.arguments, i, 1 - static_cast<int>(axis), call.specs, call.domain);
+    const auto limits =
+        haloLimits(call.kernel, call.arguments, i, 1 - static_cast<int>(axis), call.specs, call.domain);
     if (!limits || std::max(limits->below, limits->above) > 64)
       return fmt::format("'{}' is read at any distance", gather.name);
     tile.reach[axis] = std::max(tile.reach[axis], static_cast<int>(std::max(limits->below, limits->above)));
@@ -119,8 +120,7 @@ std::string TiledIteration::addCall(const GlCall& recorded) {
   if (!kernel.dispatched || target == Target::Fragment) return "it is drawn";
   if (!assemble::mayWritePacked(kernel)) return "it has loops, or is too large";
   const Shape& domain = call.domain;
-  if (domain.rank() != 2 || !mayPack(domain) ||
-      layoutOf(domain, device_.textureLimits(), true).whole.linear)
+  if (domain.rank() != 2 || !mayPack(domain) || layoutOf(domain, device_.textureLimits(), true).whole.linear)
     return "its domain is no plane whose rows have a multiple of four elements";
   if (!calls_.empty()) {
     const ResolvedCall& first = *calls_.front();
@@ -166,11 +166,13 @@ std::string TiledIteration::findCarried(LoopState& loop) {
   std::vector<std::vector<Value>> read(calls_.size());
   IterationValues values;
   int computed = 0;
-  const auto addCarried = [&](StreamState* stream) {  // in the order of their first use, so that programs are the same in each run
-    const bool isNew = std::ranges::find(carried_, stream) == carried_.end();
-    if (isNew) carried_.push_back(stream);
-    return isNew;
-  };
+  const auto addCarried =
+      [&](StreamState*
+              stream) {  // in the order of their first use, so that programs are the same in each run
+        const bool isNew = std::ranges::find(carried_, stream) == carried_.end();
+        if (isNew) carried_.push_back(stream);
+        return isNew;
+      };
   for (std::size_t c = 0; c < calls_.size(); ++c) {
     const ResolvedCall& call = *calls_[c];
     read[c].resize(call.arguments.size());
@@ -213,7 +215,8 @@ std::string TiledIteration::findCarried(LoopState& loop) {
       if (calls_[c]->arguments[i].region.stream == nullptr) continue;
       const int value = numberOf(read[c][i]);
       plan_.calls[c].values[i] = value;
-      if (calls_[c]->kernel.parameters[i].role == Role::Gather) plan_.isNear[static_cast<std::size_t>(value)] = true;
+      if (calls_[c]->kernel.parameters[i].role == Role::Gather)
+        plan_.isNear[static_cast<std::size_t>(value)] = true;
     }
   }
   for (const auto& [stream, value] : values.all()) {
@@ -231,7 +234,8 @@ std::string TiledIteration::findAfter(LoopState& loop) {
     if (++after_ > mostAfter) return "its swaps keep elements for too many iterations";
     for (const ResolvedCall* const call : calls_) {
       for (std::size_t i = 0; i < call->arguments.size(); ++i) {
-        if (call->kernel.parameters[i].role == Role::Output) isStale[call->arguments[i].region.stream] = false;
+        if (call->kernel.parameters[i].role == Role::Output)
+          isStale[call->arguments[i].region.stream] = false;
       }
     }
     for (const auto& [a, b] : loop.exchanges()) {
@@ -296,8 +300,9 @@ std::vector<TilePlan> TiledIteration::plans(std::size_t bytes) const {
       const std::array<int, 2> stored = plan.stored();
       if (2 * stored[0] < shape.columns || 2 * stored[1] < shape.rows) continue;
       if (plan.isPeriodic && (extent[0] < 4 * shape.columns || extent[1] < shape.rows)) continue;
-      const bool hasSmaller = std::ranges::any_of(
-          plans, [&](const TilePlan& other) { return other.iterations == iterations && other.texels[0] < 32; });
+      const bool hasSmaller = std::ranges::any_of(plans, [&](const TilePlan& other) {
+        return other.iterations == iterations && other.texels[0] < 32;
+      });
       if (!hasSmaller) plans.push_back(std::move(plan));
     }
   }
@@ -315,8 +320,8 @@ double TiledIteration::bytesOfTiles(const TilePlan& plan) const {
   const double around = static_cast<double>(plan.texels[0] * plan.texels[1]) / (stored[0] * stored[1]);
   double bytes = 0;
   for (std::size_t c = 0; c < carried_.size(); ++c) {
-    const auto whole = static_cast<double>(carried_[c]->element->size) *
-                       static_cast<double>(carried_[c]->shape.size());
+    const auto whole =
+        static_cast<double>(carried_[c]->element->size) * static_cast<double>(carried_[c]->shape.size());
     bytes += whole * around + (plan.next[c] != static_cast<int>(c) ? whole : 0);
   }
   return bytes / plan.iterations;
@@ -341,7 +346,12 @@ std::shared_ptr<MadeKernel> TiledIteration::make(const TilePlan& plan) const {
     made->parameters.push_back(parameter);
   };
   for (std::size_t c = 0; c < carried_.size(); ++c) {
-    add({.name = {}, .symbol = {}, .role = Role::Gather, .element = plan.elements[c], .rank = 2, .usesAt = true},
+    add({.name = {},
+         .symbol = {},
+         .role = Role::Gather,
+         .element = plan.elements[c],
+         .rank = 2,
+         .usesAt = true},
         "a stream of the loop", fmt::format("s{}", c));
   }
   for (std::size_t c = 0; c < carried_.size(); ++c) {
