@@ -66,7 +66,23 @@ class TileText {
     return fourOf(plan_.elements[static_cast<std::size_t>(value)]->fields.front().scalar).glsl;
   }
   bool isNear(int value) const { return plan_.isNear[static_cast<std::size_t>(value)]; }
-  static std::string arrayOf(int value) { return fmt::format("sk_tile{}", value); }
+  TileArray arrayOf(int value) const {
+    return {fmt::format("sk_tile{}", value), typeOf(value), plan_.texels, plan_.isSplit, isExtended(value)};
+  }
+  /// Whether texels beyond the ends of the stream get what gathers with Boundary::Clamp read there, so that these need not ask
+  /// where the ends are.
+  bool isExtended(int value) const {
+    bool clamps = false, mirrors = false;
+    for (const TileCall& call : plan_.calls) {
+      for (std::size_t i = 0; i < call.values.size(); ++i) {
+        const Parameter& parameter = call.kernel->parameters[i];
+        if (parameter.role != Role::Gather || call.values[i] != value) continue;
+        clamps = clamps || parameter.boundary == Boundary::Clamp;
+        mirrors = mirrors || parameter.boundary == Boundary::Mirror;
+      }
+    }
+    return clamps && !mirrors;
+  }
   /// The texel of a value that an invocation holds.
   static std::string held(int value, int k) { return fmt::format("sk_v{}_{}", value, k); }
 
@@ -87,9 +103,7 @@ class TileText {
     program_.variable("ivec2", "sk_high");
     for (std::size_t v = 0; v < plan_.elements.size(); ++v) {
       const int value = static_cast<int>(v);
-      if (isNear(value))
-        program_.variable(fmt::format("shared {}", typeOf(value)),
-                          fmt::format("{}[{}][{}]", arrayOf(value), rows(), columns()));
+      if (isNear(value)) arrayOf(value).declare(program_);
     }
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       const Parameter& parameter = kernel_.parameters[i];
@@ -122,7 +136,7 @@ class TileText {
       if (gather.usesExtent)
         program_.function(fmt::format("ivec4 sk_extent_{}()", gather.symbol),
                           {fmt::format("return {};", domain_.seenShape())});
-      defineTileGather(program_, domain_, gather, {arrayOf(call.values[i]), {columns(), rows()}});
+      defineTileGather(program_, domain_, gather, arrayOf(call.values[i]));
     }
   }
 
@@ -140,6 +154,8 @@ class TileText {
     line(fmt::format("ivec2 sk_n = {};", texelsOfDomain()));
     line("sk_low = max(ivec2(0), -sk_origin);");
     line(fmt::format("sk_high = min(ivec2({}, {}), sk_n - sk_origin) - 1;", columns(), rows()));
+    line(fmt::format("bool sk_isAtEnd = sk_low != ivec2(0) || sk_high != ivec2({}, {});", columns() - 1,
+                     rows() - 1));
     // Eight invocations after one another read neighbouring texels, which are in different banks of shared memory. An invocation
     // has texels below each other, and so holds most of what it reads above and below them.
     line("int sk_i = int(gl_LocalInvocationIndex), sk_w = sk_i >> 5;");
@@ -153,10 +169,7 @@ class TileText {
   void load() {
     forEachTexel([&](int k) {
       line(fmt::format("sk_enter({});", spotOf(k)));
-      if (!plan_.isPeriodic) {
-        line(fmt::format("bool sk_inside{} = all(lessThan(uvec2(sk_pixel), uvec2(sk_n)));", k));
-        line("sk_pixel = clamp(sk_pixel, ivec2(0), sk_n - 1);");
-      }
+      if (!plan_.isPeriodic) line("sk_pixel = clamp(sk_pixel, ivec2(0), sk_n - 1);");
       for (std::size_t c = 0; c < plan_.carried; ++c) {
         const auto value = static_cast<int>(c);
         line(fmt::format("{} {} = {};", typeOf(value), held(value, k), fetched(c)));
@@ -170,17 +183,16 @@ class TileText {
 
   /// Gives the work group what calls read at neighbours.
   void shareCarried() {
-    if (std::find(plan_.isNear.begin(), plan_.isNear.begin() + static_cast<std::ptrdiff_t>(plan_.carried),
-                  true) == plan_.isNear.begin() + static_cast<std::ptrdiff_t>(plan_.carried))
-      return;
+    std::vector<int> near;
+    for (std::size_t c = 0; c < plan_.carried; ++c) {
+      if (plan_.isNear[c]) near.push_back(static_cast<int>(c));
+    }
+    if (near.empty()) return;
     line("if (sk_step > 1) {");  // all have read what is there
     line("  memoryBarrierShared();");
     line("  barrier();");
     line("}");
-    for (std::size_t c = 0; c < plan_.carried; ++c) {
-      if (plan_.isNear[c]) share(static_cast<int>(c));
-    }
-    synchronize();
+    share(near);
   }
 
   std::string fetched(std::size_t carried) {
@@ -194,10 +206,42 @@ class TileText {
     return fmt::format("{}({})", typeOf(static_cast<int>(carried)), elements);
   }
 
-  /// Stores what invocations hold of a value to shared memory.
-  void share(int value) {
+  /// Stores what invocations hold of some values to shared memory, for all of the work group.
+  void share(const std::vector<int>& values) {
+    bool isAnyExtended = false;
+    for (const int value : values) {
+      forEachTexel([&](int k) {
+        for (const std::string& store :
+             arrayOf(value).storing(fmt::format("sk_mine.y + {}", k), "sk_mine.x", held(value, k)))
+          line(store);
+      });
+      isAnyExtended = isAnyExtended || isExtended(value);
+    }
+    synchronize();
+    if (!isAnyExtended) return;
+    line("if (sk_isAtEnd) {");
+    for (const int value : values) {
+      if (isExtended(value)) extend(value);
+    }
+    line("  memoryBarrierShared();");
+    line("  barrier();");
+    line("}");
+  }
+
+  /// Gives texels beyond the ends of the stream what clamped indices give.
+  void extend(int value) {
+    const TileArray array = arrayOf(value);
     forEachTexel([&](int k) {
-      line(fmt::format("{}[sk_mine.y + {}][sk_mine.x] = {};", arrayOf(value), k, held(value, k)));
+      line("  {");
+      line(fmt::format("    ivec2 sk_s = {}, sk_p = clamp(sk_s, sk_low, sk_high);", spotOf(k)));
+      line("    if (sk_s != sk_p) {");
+      line(fmt::format("      {} sk_v = {};", typeOf(value), array.texel("sk_p.y", "sk_p.x")));
+      line(fmt::format("      {} = sk_s.x == sk_p.x ? sk_v : sk_s.x < sk_p.x ? sk_v.xxxx : sk_v.wwww;",
+                       held(value, k)));
+      for (const std::string& store : array.storing("sk_s.y", "sk_s.x", held(value, k)))
+        line("      " + store);
+      line("    }");
+      line("  }");
     });
   }
 
@@ -215,12 +259,14 @@ class TileText {
         line(sk::assemble::call(call.entry, argumentsOf(call, k, "xyzw"[lane]), "      ") + ";");
       }
     });
+    std::vector<int> near;
     for (std::size_t i = 0; i < call.kernel->parameters.size(); ++i) {
-      if (call.kernel->parameters[i].role != Role::Output || !isNear(call.values[i])) continue;
-      synchronize();  // all have read what was there
-      share(call.values[i]);
-      synchronize();
+      if (call.kernel->parameters[i].role == Role::Output && isNear(call.values[i]))
+        near.push_back(call.values[i]);
     }
+    if (near.empty()) return;
+    synchronize();  // all have read what was there
+    share(near);
   }
 
   /// Fetches the texels around texel k, unless the invocation holds them.
@@ -228,22 +274,15 @@ class TileText {
     const TexelWindow window(gather);
     for (int y = -window.reachInY(); y <= window.reachInY(); ++y) {
       for (int x = -window.reachInX(); x <= window.reachInX(); ++x) {
-        const bool isHeld = x == 0 && k + y >= 0 && k + y < texelsOfInvocation() &&
-                            (y == 0 || gather.boundary != Boundary::Mirror);
-        line(fmt::format("{} = {};", window.texelName(x, y),
-                         isHeld ? heldNear(gather.boundary, value, k, y)
-                                : fmt::format("sk_texel_at_{}(ivec2({}, {}))", gather.symbol, x, y)));
+        const bool isHeld =
+            x == 0 && k + y >= 0 && k + y < texelsOfInvocation() &&
+            (y == 0 || gather.boundary == Boundary::Wrap || gather.boundary == Boundary::Border ||
+             (gather.boundary == Boundary::Clamp && isExtended(value)));
+        line(fmt::format(
+            "{} = {};", window.texelName(x, y),
+            isHeld ? held(value, k + y) : fmt::format("sk_texel_at_{}(ivec2({}, {}))", gather.symbol, x, y)));
       }
     }
-  }
-
-  /// The texel y rows below texel k, or the nearest one in the stream if that is what the boundary mode reads.
-  std::string heldNear(Boundary boundary, int value, int k, int y) const {
-    std::string text;
-    const int back = y < 0 ? 1 : -1;
-    for (; boundary == Boundary::Clamp && y != 0; y += back)
-      text += fmt::format("sk_inside{} ? {} : ", k + y, held(value, k + y));
-    return text + held(value, k + y);
   }
 
   static std::vector<std::string> argumentsOf(const TileCall& call, int k, char component) {
@@ -333,15 +372,15 @@ std::array<int, 2> TilePlan::halo() const {
 }
 
 std::size_t TilePlan::sharedBytes() const {
-  const auto arrays = static_cast<std::size_t>(std::ranges::count(isNear, true));
-  return arrays * static_cast<std::size_t>(texels[0] * texels[1]) * lanes * sizeof(float);
+  const TileArray array{.name = {}, .type = {}, .texels = texels, .isSplit = isSplit};
+  return static_cast<std::size_t>(std::ranges::count(isNear, true)) * array.bytes();
 }
 
 std::string describe(const TilePlan& plan) {
   std::string text =
-      fmt::format("// {} iterations of {} x {} texels by {}{}: {} carried, next {}\n", plan.iterations,
+      fmt::format("// {} iterations of {} x {} texels by {}{}{}: {} carried, next {}\n", plan.iterations,
                   plan.texels[0], plan.texels[1], plan.invocations, plan.isPeriodic ? ", periodic" : "",
-                  plan.carried, fmt::join(plan.next, " "));
+                  plan.isSplit ? ", split" : "", plan.carried, fmt::join(plan.next, " "));
   for (std::size_t v = 0; v < plan.elements.size(); ++v)
     text += fmt::format("// {}{}\n", plan.elements[v]->name, plan.isNear[v] ? " near" : "");
   for (const TileCall& call : plan.calls) {

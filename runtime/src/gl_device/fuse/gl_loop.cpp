@@ -31,12 +31,12 @@ namespace {
 
 /// Iterations between two looks at the clock: a multiple of what tiles run at once.
 constexpr std::int64_t timedIterations = 12;
-/// The first rounds of a trial compile programs and take notes.
-constexpr int warmRounds = 2, timedRounds = 3;
+/// The first round of a trial compiles programs and takes notes.
+constexpr int warmRounds = 1, timedRounds = 3;
 /// Passes over fewer elements take as long as it takes to start them, and the waits of a trial would cost more than it finds out.
 constexpr std::int64_t fewElements = 1 << 16;
 /// The most tiles that are tried.
-constexpr std::size_t mostTried = 3;
+constexpr std::size_t mostTried = 4;
 
 class GlLoop final : public LoopRunner {
  public:

@@ -65,10 +65,14 @@ bool isOneScalar(const program::Element& element) {
 
 struct TileShape {
   int columns, rows, invocations;
+  bool isSplit;
 };
-/// Larger ones first: they compute less of what is around them.
-constexpr std::array<TileShape, 6> shapes{
-    {{32, 64, 512}, {16, 64, 256}, {16, 48, 256}, {16, 32, 128}, {8, 32, 64}, {8, 16, 32}}};
+/// Shapes to try. Large tiles compute less of what is around them; small groups of invocations that hold few texels leave a
+/// GPU room for several, of which one computes while another waits for memory.
+constexpr std::array<TileShape, 5> shapesOfOne{
+    {{16, 64, 256, true}, {16, 64, 512, true}, {16, 64, 256, false}, {16, 32, 256, true}, {8, 32, 64, true}}};
+constexpr std::array<TileShape, 5> shapesOfSeveral{
+    {{16, 32, 256, true}, {16, 32, 256, false}, {8, 64, 128, true}, {16, 32, 128, true}, {8, 32, 64, true}}};
 
 }  // namespace
 
@@ -289,21 +293,20 @@ std::size_t TiledIteration::groupBytes() const {
 std::vector<TilePlan> TiledIteration::plans(std::size_t bytes) const {
   std::vector<TilePlan> plans;
   const assemble::Index4 extent = xFirst(calls_.front()->domain);
+  const bool areSeveral = std::ranges::count(plan_.isNear, true) > 1;
   for (const int iterations : {4, 3, 2}) {
-    if (iterations == 3 && !plans.empty()) continue;
-    for (const TileShape& shape : shapes) {
+    if (!plans.empty()) break;  // the more at once, the fewer bytes
+    for (const TileShape& shape : areSeveral ? shapesOfSeveral : shapesOfOne) {
       TilePlan plan = plan_;
       plan.iterations = iterations;
       plan.texels = {shape.columns, shape.rows};
       plan.invocations = shape.invocations;
+      plan.isSplit = shape.isSplit;
       if (plan.sharedBytes() > bytes) continue;
       const std::array<int, 2> stored = plan.stored();
       if (2 * stored[0] < shape.columns || 2 * stored[1] < shape.rows) continue;
       if (plan.isPeriodic && (extent[0] < 4 * shape.columns || extent[1] < shape.rows)) continue;
-      const bool hasSmaller = std::ranges::any_of(plans, [&](const TilePlan& other) {
-        return other.iterations == iterations && other.texels[0] < 32;
-      });
-      if (!hasSmaller) plans.push_back(std::move(plan));
+      plans.push_back(std::move(plan));
     }
   }
   return plans;
