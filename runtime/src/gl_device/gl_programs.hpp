@@ -104,6 +104,7 @@ class GlPrograms {
 
   MadeKernels& scalarKernels() { return scalarKernels_; }
   MadeKernels& mergeKernels() { return mergeKernels_; }
+  MadeKernels& fusedKernels() { return fusedKernels_; }
   /// Delete all programs of a kernel or reduction that is about to end.
   void forget(const program::Kernel& kernel) noexcept {
     for (auto& [key, cache] : caches_) cache.forget(kernel);
@@ -139,6 +140,7 @@ class GlPrograms {
   MadeKernels scalarKernels_{*this};
   MadeKernels mergeKernels_{*this};
   std::array<bool, gl::formatCount> stored_{};  ///< mayStore(), by Format::index
+  MadeKernels fusedKernels_{*this};
   std::map<ProgramCacheKey, ProgramCache> caches_;
   ProgramCache* selected_ = nullptr;
   ProgramCacheKey selectedKey_;

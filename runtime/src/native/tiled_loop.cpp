@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,13 +14,13 @@
 #include <fmt/format.h>
 
 #include "device/loop_state.hpp"
+#include "device/loop_tiles.hpp"
 #include "device/write_scope.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
 #include "native/thread_pool.hpp"
 #include "native/tiled_call.hpp"
 #include "native/time_tiles.hpp"
-#include "sk/error.hpp"
 #include "sk/native/parallel.hpp"
 #include "support/host_limits.hpp"
 

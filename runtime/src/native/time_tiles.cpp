@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "native/time_tiles.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "device/loop_tiles.hpp"
 #include "native/thread_pool.hpp"
-#include "sk/error.hpp"
 #include "support/host_limits.hpp"
 
 namespace sk::native {
@@ -128,16 +123,7 @@ std::optional<TileChoice> choiceAlong(const TileProblem& problem, std::span<cons
 }  // namespace
 
 std::int64_t cacheOfTile(bool isChain) {
-  if (const char* const given = std::getenv("SK_LOOP_TILES")) {
-    const std::string_view text = given;
-    if (text == "off") return 0;
-    std::int64_t bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error == std::errc() && end == text.data() + text.size() && bytes > 0) return bytes;
-    throw Error(fmt::format(
-        "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
-        text));
-  }
+  if (const auto given = givenTileBytes()) return *given;
   if (isChain) {
     constexpr std::int64_t nearest = 48 << 10;
     const std::int64_t first = bytesOfCache(1);
