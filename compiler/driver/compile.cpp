@@ -100,9 +100,16 @@ std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kerne
 
 /// Keeps only the kernels that --kernel names, with or without their namespaces.
 bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& messages) {
-  std::string known;
-  for (const ir::Kernel& kernel : module.kernels)
-    known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
+  std::vector<std::string> names;
+  const auto addName = [&](const ir::Kernel& kernel) {
+    if (std::ranges::find(names, qualifiedName(kernel)) == names.end())
+      names.push_back(qualifiedName(kernel));
+  };
+  for (const ir::Kernel& kernel : module.kernels) {
+    if (!kernel.isOfPipeline) addName(kernel);
+  }
+  for (const ir::Pipeline& pipeline : module.pipelines) addName(pipeline.face);
+  const std::string known = fmt::format("{}", fmt::join(names, ", "));
   const auto isNamed = [&](const ir::Kernel& kernel) {
     return kernel.name == wanted || qualifiedName(kernel) == wanted;
   };
@@ -285,8 +292,11 @@ void reportPipelines(const Options& options, const ir::Module& module, Diagnosti
   if (options.emit != Emit::Js) return;
   for (const ir::Pipeline& pipeline : module.pipelines) {
     if (pipeline.isKernel) continue;
-    return diagnostics.report(Diag::PipelineInBrowser, pipeline.face.loc,
-                              {pipeline.face.name, std::to_string(pipeline.passes.size())});
+    std::string calls;
+    for (const ir::PipelinePass& pass : pipeline.passes) {
+      for (const std::string& name : pass.calls) calls += (calls.empty() ? "'" : "', '") + name;
+    }
+    return diagnostics.report(Diag::PipelineInBrowser, pipeline.face.loc, {pipeline.face.name, calls + "'"});
   }
 }
 

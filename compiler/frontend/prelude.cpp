@@ -288,7 +288,9 @@ template <class T> struct scatter_4d {
   scatter_3d<T> operator[](long) const; scatter_3d<T> operator[](ulong) const;
   scatter_3d<T> operator[](float) const; T& operator[](int4) const; T& operator[](float4) const;
 };
-template <class T> struct variable_output { void operator=(const T&) = delete("variable_output"); };
+template <class T> struct variable_output {
+  variable_output() = default; template <class U> requires (__is_same(U, T)) variable_output(const U&);
+  void operator=(const T&) = delete("variable_output"); };
 template <class T> struct __sk_same { using type = T; };
 template <class T> void push(variable_output<T> r, typename __sk_same<T>::type value);
 void printf(const char*, ...) __attribute__((format(printf, 1, 2)));

@@ -119,13 +119,23 @@ class PipelineLowering {
     });
   }
 
+  /// True if an overload says how partial results of a reduce combine: as a part of a kernel it would have none.
+  bool hasOwnCombine(const PipelineCall& made) const {
+    if (!isFold(made.syntax->kind)) return false;
+    const std::vector<std::string> scope = module_.scopeOf(made.callee);
+    return std::ranges::count_if(module_.module_.kernels, [&](const ir::Kernel& kernel) {
+             return kernel.name == made.callee->getNameAsString() && kernel.scope == scope &&
+                    kernel.reduction;
+           }) > 1;
+  }
+
   void group() {
     for (const PipelineCall& made : calls_.list()) {
       if (!made.isLive) continue;
       const ir::Choices choices = chosen(made.syntax->choices, syntax_.choices);
       const bool ownDomain = foldsOwnDomain(made) || made.appends();
       const bool scans = made.syntax->kind == FunctionKind::Scan;
-      const bool isAlone = ownDomain || scans;
+      const bool isAlone = ownDomain || scans || hasOwnCombine(made);
       const bool joins =
           !passes_.empty() && !isAlone && !passes_.back().isAlone &&
           isSame(passes_.back().choices, choices) &&
@@ -159,7 +169,10 @@ class PipelineLowering {
   void findStored() {
     Streams live = calls_.results();
     for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) {
-      std::ranges::set_intersection(pass->written, live, std::inserter(pass->stored, pass->stored.end()));
+      if (pass->calls.front()->syntax->kind == FunctionKind::Scan)
+        pass->stored = pass->written;  // it is called as it is
+      else
+        std::ranges::set_intersection(pass->written, live, std::inserter(pass->stored, pass->stored.end()));
       for (const Stream stream : pass->written) live.erase(stream);
       live.merge(readBefore(*pass));
     }
@@ -201,6 +214,7 @@ class PipelineLowering {
 
   void makePass(Pass& pass) {
     const bool isOnly = passes_.size() == 1;
+    inPass_ = {pass.calls.begin(), pass.calls.end()};
     if (useKernelItself(pass)) return;
     if (pass.calls.front()->syntax->kind == FunctionKind::Scan)
       fail(Diag::PipelineScan, pass.calls.front()->expr->getBeginLoc(),
@@ -352,13 +366,42 @@ class PipelineLowering {
       return gather;
     }
     ir::KernelParam param;
+    param.range = rangeOf(parameter);
     const bool isGiven = llvm::isa<clang::ParmVarDecl>(parameter.stream);
-    if (isGiven) param = ir::clone(pipeline_.face.params[operandOf(parameter.stream).index]);
+    if (isGiven) {
+      const std::optional<ir::ValueRange> range = param.range;
+      param = ir::clone(pipeline_.face.params[operandOf(parameter.stream).index]);
+      if (!param.range) param.range = range;
+    }
     param.name = parameter.name;
     param.role = parameter.kind == Kind::Input ? ir::ParamRole::Input : ir::ParamRole::Output;
     param.type = variable.type;
     param.loc = variable.loc;
     return param;
+  }
+
+  /// What the first kernel that reads an input of the pass promises of it.
+  std::optional<ir::ValueRange> rangeOf(const PassSource::Parameter& parameter) {
+    if (parameter.kind != Kind::Input) return std::nullopt;
+    for (const PipelineCall& made : calls_.list()) {
+      for (const StreamUse& use : made.uses) {
+        if (use.stream != parameter.stream || use.role != ir::ParamRole::Input || !inPass_.contains(&made))
+          continue;
+        const ParamSyntax* syntax = module_.syntax_.param(use.parameter->getLocation());
+        const bool isSame = module_.context().hasSameUnqualifiedType(
+            use.parameter->getType().getNonReferenceType(), use.stream->getType().getNonReferenceType());
+        if (!isSame || syntax == nullptr || !syntax->range) return std::nullopt;
+        module_.noteGenerated(made.callee);
+        ir::Variable variable;
+        variable.type = module_.type(use.parameter->getType().getNonReferenceType().getUnqualifiedType(),
+                                     use.parameter->getLocation());
+        const std::optional<ir::ValueRange> range =
+            module_.kernelParam(use.parameter, parameter.name, variable).range;
+        module_.noteGenerated(definition_);
+        return range;
+      }
+    }
+    return std::nullopt;
   }
 
   ir::FunctionId addFunction(const PassSource& source, bool checks) {
@@ -406,6 +449,7 @@ class PipelineLowering {
   ir::Pipeline pipeline_;
   const PipelineCalls calls_;
   std::vector<Pass> passes_;
+  std::set<const PipelineCall*> inPass_;  ///< the calls of the pass that is made
   std::map<Stream, std::uint32_t> localNumbers_;
 };
 

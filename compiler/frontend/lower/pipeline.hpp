@@ -53,6 +53,6 @@ void lowerPipeline(ModuleLowering& module, const clang::FunctionDecl* declaratio
                    const KernelSyntax& syntax);
 
 /// The stream that an argument names; null for any other expression.
-const clang::VarDecl* streamNamed(const DeclarationSyntax& syntax, const clang::Expr* argument);
+const clang::VarDecl* streamNamed(const ModuleLowering& module, const clang::Expr* argument);
 
 }  // namespace skc::frontend

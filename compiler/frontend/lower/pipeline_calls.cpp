@@ -24,15 +24,15 @@ void addNames(const clang::Stmt* statement, std::set<const clang::VarDecl*>& nam
 
 }  // namespace
 
-const clang::VarDecl* streamNamed(const DeclarationSyntax& syntax, const clang::Expr* argument) {
+const clang::VarDecl* streamNamed(const ModuleLowering& module, const clang::Expr* argument) {
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(argument));
   const auto* variable = reference ? llvm::dyn_cast<clang::VarDecl>(reference->getDecl()) : nullptr;
   if (variable == nullptr) return nullptr;
-  if (syntax.isLocalStream(variable->getLocation())) return variable;
+  if (module.syntax().isLocalStream(variable->getLocation())) return variable;
   if (!llvm::isa<clang::ParmVarDecl>(variable)) return nullptr;
-  const ParamSyntax* declared = syntax.param(variable->getLocation());
-  const bool isValue = declared == nullptr || declared->role == ir::ParamRole::Uniform ||
-                       declared->role == ir::ParamRole::Spec || declared->role == ir::ParamRole::Iterator;
+  const ir::ParamRole role = module.roleOf(variable);
+  const bool isValue =
+      role == ir::ParamRole::Uniform || role == ir::ParamRole::Spec || role == ir::ParamRole::Iterator;
   return isValue ? nullptr : variable;
 }
 
@@ -72,7 +72,8 @@ void PipelineCalls::declaration(const clang::DeclStmt* statement) {
       locals_.push_back(variable);
       continue;
     }
-    if (variable->getInit() == nullptr) refuse(statement, "a variable without a value");
+    if (variable->getInit() == nullptr)
+      module_.fail(Diag::PipelineValue, variable->getLocation(), {variable->getNameAsString()});
     std::set<const clang::VarDecl*>& names = values_[variable];
     addNames(variable->getInit(), names);
     for (const clang::VarDecl* named : names) refuseStream(named, variable->getInit());
@@ -119,7 +120,7 @@ void PipelineCalls::argument(PipelineCall& made, const Bundles::Source& source) 
   const clang::Expr* given = argumentFor(made.expr, made.callee, source.parameter);
   const ir::ParamRole role =
       source.member.empty() ? module_.roleOf(source.parameter) : ir::ParamRole::Uniform;
-  const PipelineStream stream = streamNamed(module_.syntax(), given);
+  const PipelineStream stream = streamNamed(module_, given);
   const bool isValue = role == ir::ParamRole::Uniform || role == ir::ParamRole::Spec ||
                        role == ir::ParamRole::Iterator || (role == ir::ParamRole::Input && stream == nullptr);
   if (isValue) {
@@ -127,8 +128,7 @@ void PipelineCalls::argument(PipelineCall& made, const Bundles::Source& source) 
     addNames(given, names);
     for (const clang::VarDecl* named : names) refuseStream(named, given);
     made.isPlain = made.isPlain && source.member.empty() && role != ir::ParamRole::Input &&
-                   llvm::isa<clang::DeclRefExpr>(withoutCopies(given)) && names.size() == 1 &&
-                   llvm::isa<clang::ParmVarDecl>(*names.begin());
+                   isSameParameter(given, source.parameter, role);
     made.values.insert(names.begin(), names.end());
     return;
   }
@@ -161,8 +161,38 @@ void PipelineCalls::argument(PipelineCall& made, const Bundles::Source& source) 
       if (held != role) fails(Diag::PipelineParameter, "such an output");
       break;
   }
+  made.isPlain = made.isPlain && isSameType(*stream, *source.parameter) && !hasOwnIdentity(*stream);
   const bool writesStream = made.syntax->kind == FunctionKind::Scan && role == ir::ParamRole::Accumulator;
   made.uses.push_back({stream, source.parameter, writesStream ? ir::ParamRole::Output : role});
+}
+
+/// True if an argument is a parameter of the pipeline that C++ could pass to the kernel instead.
+bool PipelineCalls::isSameParameter(const clang::Expr* given, const clang::ParmVarDecl* parameter,
+                                    ir::ParamRole role) {
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(given));
+  const auto* own = reference ? llvm::dyn_cast<clang::ParmVarDecl>(reference->getDecl()) : nullptr;
+  if (own == nullptr || module_.bundles().isBundle(own->getType())) return false;
+  const bool isIterator = role == ir::ParamRole::Iterator;
+  return isSameType(*own, *parameter) && (module_.roleOf(own) == ir::ParamRole::Iterator) == isIterator;
+}
+
+/// True if no argument of one needs a conversion to the other; a gather reads elements as they are.
+bool PipelineCalls::isSameType(const clang::VarDecl& own, const clang::ParmVarDecl& parameter) {
+  const auto elementOf = [&](const clang::VarDecl& variable) {
+    ir::Type element;
+    const clang::QualType type = variable.getType().getNonReferenceType().getUnqualifiedType();
+    const SourceLocation where = variable.getLocation();
+    if (module_.gatherRank(type, where, element) != 0 || module_.appendRank(type, where, element))
+      return element;
+    return module_.type(type, where);
+  };
+  return elementOf(own) == elementOf(parameter);
+}
+
+/// True if the pipeline declares an identity for an accumulator, which may differ from that of a reduce.
+bool PipelineCalls::hasOwnIdentity(const clang::VarDecl& stream) const {
+  const ParamSyntax* syntax = module_.syntax().param(stream.getLocation());
+  return syntax != nullptr && !syntax->identity.empty();
 }
 
 /// The role of a parameter, and Output for local streams, which are one and read, too.
@@ -178,6 +208,16 @@ void PipelineCalls::note(const PipelineCall& made) {
       module_.fail(Diag::PipelineUnwritten, argumentFor(made.expr, made.callee, use.parameter)->getBeginLoc(),
                    {use.stream->getNameAsString()});
     }
+    const bool isWritten = !isRead;
+    for (const StreamUse& other : made.uses) {
+      const bool isSame = &other != &use && other.stream == use.stream && isWritten &&
+                          other.role != ir::ParamRole::Input && other.role != ir::ParamRole::Gather;
+      if (!isSame) continue;
+      module_.fail(Diag::PipelineSameOutput, made.expr->getBeginLoc(),
+                   {use.parameter->getNameAsString(), other.parameter->getNameAsString(),
+                    made.callee->getNameAsString(), use.stream->getNameAsString()});
+    }
+    if (use.role == ir::ParamRole::Gather) checkRank(made, use);
     if (use.role == ir::ParamRole::Accumulator && written_.contains(use.stream)) {
       module_.fail(Diag::PipelineFoldedTwice,
                    argumentFor(made.expr, made.callee, use.parameter)->getBeginLoc(),
@@ -189,23 +229,35 @@ void PipelineCalls::note(const PipelineCall& made) {
   }
 }
 
+/// Reports a stream that kernels read in different ranks: no stream has two.
+void PipelineCalls::checkRank(const PipelineCall& made, const StreamUse& use) {
+  ir::Type element;
+  const int rank = module_.gatherRank(use.parameter->getType(), use.parameter->getLocation(), element);
+  const auto [known, isNew] = ranks_.emplace(use.stream, rank);
+  if (isNew || known->second == rank) return;
+  module_.fail(Diag::PipelineRank, argumentFor(made.expr, made.callee, use.parameter)->getBeginLoc(),
+               {use.stream->getNameAsString(), made.callee->getNameAsString(), std::to_string(rank),
+                std::to_string(known->second)});
+}
+
 void PipelineCalls::checkResults() {
-  bool hasShape = false;
+  bool hasShape = false, hasResult = false;
   for (const Bundles::Source& source : sources_) {
     if (!source.member.empty()) continue;
     const ir::ParamRole role = module_.roleOf(source.parameter);
     hasShape = hasShape || role == ir::ParamRole::Output || role == ir::ParamRole::Input;
     const bool isResult = role == ir::ParamRole::Output || role == ir::ParamRole::Accumulator ||
                           role == ir::ParamRole::VariableOutput || role == ir::ParamRole::Scatter;
+    hasResult = hasResult || isResult;
     if (isResult && !written_.contains(source.parameter)) {
       module_.fail(Diag::PipelineOutput, source.parameter->getLocation(),
                    {definition_->getNameAsString(), source.parameter->getNameAsString()});
     }
   }
+  if (!hasResult)
+    module_.fail(Diag::PipelineWithoutResult, definition_->getLocation(), {definition_->getNameAsString()});
   if (!hasShape)
     module_.fail(Diag::PipelineWithoutDomain, definition_->getLocation(), {definition_->getNameAsString()});
-  if (calls_.empty())
-    module_.fail(Diag::KernelWithoutOutput, definition_->getLocation(), {definition_->getNameAsString()});
 }
 
 PipelineStreams PipelineCalls::results() const {

@@ -79,7 +79,11 @@ class PipelineCalls {
   void call(const clang::Expr* expression);
   void argument(PipelineCall& made, const Bundles::Source& source);
   void note(const PipelineCall& made);
+  void checkRank(const PipelineCall& made, const StreamUse& use);
   void checkResults();
+  bool isSameParameter(const clang::Expr* given, const clang::ParmVarDecl* parameter, ir::ParamRole role);
+  bool isSameType(const clang::VarDecl& own, const clang::ParmVarDecl& parameter);
+  bool hasOwnIdentity(const clang::VarDecl& stream) const;
   void dropUnusedCalls();
 
   ModuleLowering& module_;
@@ -90,6 +94,7 @@ class PipelineCalls {
   std::map<const clang::VarDecl*, std::set<const clang::VarDecl*>> values_;
   std::vector<PipelineCall> calls_;
   PipelineStreams written_;  ///< by the calls so far
+  std::map<PipelineStream, int> ranks_;  ///< in which kernels gather them
 };
 
 }  // namespace skc::frontend

@@ -36,6 +36,7 @@ class PipelineCall {
            arguments_.size());
     }
     refuseOptions();
+    checkStreams();
     domain_ = domain();
     checkOutputs();
     for (std::size_t i = 0; i < pipeline_.passes.size(); ++i) checkLaterReads(i);
@@ -51,6 +52,35 @@ class PipelineCall {
   [[noreturn]] void fail(Error::Kind kind, fmt::format_string<Values...> format, Values&&... values) const {
     throw Error(fmt::format("{}: {}", pipeline_.name, fmt::format(format, std::forward<Values>(values)...)),
                 kind);
+  }
+
+  /// Checks that all streams are there, and of one device, before a message could name a local stream instead.
+  void checkStreams() const {
+    const program::PipelineParameter* first = nullptr;
+    const StreamState* stream = nullptr;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      const program::PipelineParameter& parameter = pipeline_.parameters[i];
+      const Argument& argument = arguments_[i];
+      const bool isValue =
+          parameter.role == Role::Spec || parameter.role == Role::Iterator || argument.value != nullptr;
+      if (isValue || argument.isNone || argument.region.distributed != nullptr) continue;
+      const StreamState* const own = argument.region.stream;
+      if (own == nullptr && parameter.role != Role::Uniform && parameter.role != Role::Gather) {
+        fail(Error::Kind::Lost,
+             "'{}' holds no stream: it was default-constructed or moved from; make one by "
+             "device.stream<T>(shape)",
+             parameter.name);
+      }
+      if (own == nullptr || own->device == nullptr) continue;
+      if (stream == nullptr) {
+        stream = own;
+        first = &parameter;
+      } else if (stream->device != own->device) {
+        fail(Error::Kind::Device,
+             "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
+             first->name, parameter.name, stream->device->name(), own->device->name());
+      }
+    }
   }
 
   void refuseOptions() const {
