@@ -25,6 +25,8 @@ RATIOS += [
     ("native", DIFFUSE, ["Embree"], 0.35, LARGE),
     ("compute", PRIMARY + DIFFUSE, ["CUDA"], 1.0, LARGE),
 ]
+# Our contender, programs, another way of ours, peers, least ratio, from which size on.
+WAY_RATIOS = [("native", ["sgemm"], "contracted", ["OpenBLAS"], 0.6, LARGE)]
 # Our contender, programs, elements a second in millions, whether the renderer is in software.
 RATES = [
     ("fragment", PRIMARY, 3, True),
@@ -73,6 +75,10 @@ def judge(found):
         if ours in found.ours() and set(peers) & set(found.peers()):
             for program in programs:
                 rows.append(ratio_row(found, program, [ours], peers, least, smallest))
+    for ours, programs, way, peers, least, smallest in WAY_RATIOS:
+        if ours in found.ours() and set(peers) & set(found.peers()):
+            rows += [ratio_row(found, program, [f"{ours} {way}"], peers, least, smallest) for program in programs
+                     if found.sizes(program)]
     for ours, programs, least, in_software in RATES:
         rows += [rate_row(found, program, ours, least) for program in programs
                  if found.sizes(program) and ours in found.ours() and is_software(found) == in_software]

@@ -101,7 +101,7 @@ const std::vector<Program>& programs() {
       {"sgemv", "elements", {12, 16, 20, 24}, {}, gemvWork, gemvProblem, gemvCheck, gemvOurs},
       {"sgemm",
        "elements",
-       {12, 16, 20},
+       {12, 16, 20, 24},
        {},
        gemmWork,
        gemmProblem,
