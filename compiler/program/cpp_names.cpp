@@ -14,8 +14,8 @@
 
 #include "ir/print.hpp"
 #include "program/shared_headers.hpp"
-#include "program/stub_parts.hpp"
 #include "program/stream_structs.hpp"
+#include "program/stub_parts.hpp"
 #include "support/namer.hpp"
 
 namespace skc::emit {

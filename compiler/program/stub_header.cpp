@@ -10,8 +10,8 @@
 #include "ir/print.hpp"
 #include "program/elements.hpp"
 #include "program/shared_headers.hpp"
-#include "program/stub_parts.hpp"
 #include "program/stream_structs.hpp"
+#include "program/stub_parts.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
