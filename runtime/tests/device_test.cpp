@@ -43,6 +43,12 @@ TEST_CASE("a device tells what it is") {
   CHECK(es.profile() == "essl300");
   CHECK(es.limits().textureSize == 100);
   CHECK(es.limits().drawBuffers >= 4);
+  CHECK(es.limits().images == 0);
+  Device dispatching({.profile = "essl310", .limits = "guaranteed"});
+  CHECK(dispatching.profile() == "essl310");
+  CHECK(dispatching.limits().drawBuffers == 4);
+  CHECK(dispatching.limits().images == 4);
+  CHECK(dispatching.limits().uniformComponents == 512);
 }
 
 TEST_CASE("a device tells how much memory it has, if anybody does, and no more than the limit") {
