@@ -308,6 +308,14 @@ std::vector<TilePlan> TiledIteration::plans(std::size_t bytes) const {
   return plans;
 }
 
+std::string TiledIteration::identity() const {
+  const ResolvedCall& first = *calls_.front();
+  const CallOptions& options = first.options;
+  return fmt::format("{}, {} {} {} {}\n{}", toString(first.domain), static_cast<int>(options.target),
+                     static_cast<int>(options.intrinsics), static_cast<int>(options.tables),
+                     static_cast<int>(options.contraction), make(plan_)->body);
+}
+
 bool TiledIteration::isPlane() const {
   return std::ranges::none_of(carried_, [](const StreamState* stream) {
     return static_cast<const GlStream*>(stream)->layout.whole.linear;
