@@ -217,12 +217,21 @@ TEST_CASE(
   auto u = device.stream<float>(shape), v = device.stream<float>(shape);
   auto a = device.stream<float>(shape), b = device.stream<float>(shape);
   for (auto* stream : {&u, &a}) stream->write(drawn(shape.size(), 3));
-  sk::Loop loop = device.record([&] {
-    fused::smooth(a, b);
-    std::swap(a, b);
-  });
-  CHECK_THAT(loop.plan(),
-             Contains("fused::smooth: the first iterations find out whether tiles of several are faster"));
+  const auto record = [&] {
+    return device.record([&] {
+      fused::smooth(a, b);
+      std::swap(a, b);
+    });
+  };
+  sk::Loop loop = record();
+  const auto isDecided = [](const std::string& plan) {
+    return plan.find("iterations at once") != std::string::npos ||
+           plan.find("no tiles of several iterations: they take") != std::string::npos;
+  };
+  if (!isDecided(loop.plan())) {  // no earlier process has tried
+    CHECK_THAT(loop.plan(),
+               Contains("fused::smooth: the first iterations find out whether tiles of several are faster"));
+  }
   for (const int times : {5, 99, 12, 13, 150, 99}) {
     for (int i = 0; i < times; ++i) {
       fused::smooth(u, v);
@@ -232,8 +241,8 @@ TEST_CASE(
     REQUIRE(haveSameBits(a.read(), u.read()));
     REQUIRE(haveSameBits(b.read(), v.read()));
   }
-  CHECK_THAT(loop.plan(),
-             Contains("iterations at once") || Contains("no tiles of several iterations: they take"));
+  CHECK(isDecided(loop.plan()));
+  CHECK(isDecided(record().plan()));  // without another trial
 }
 
 }  // namespace

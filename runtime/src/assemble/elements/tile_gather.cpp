@@ -50,7 +50,8 @@ class TileGatherText {
     }
     lines.push_back(
         fmt::format("sk_p = clamp(sk_p, ivec2(0), ivec2({}, {}));", lanes * columns() - 1, rows() - 1));
-    lines.push_back(fmt::format("return {};", array_.component("sk_p.y", "sk_p.x >> 2", "sk_p.x & 3")));
+    lines.push_back(fmt::format(
+        "return {};", fetchedComponent(program_, gather_, texel("sk_p.y", "sk_p.x >> 2"), "sk_p.x & 3")));
     program_.function(fmt::format("{} sk_at_{}(ivec2 sk_i)", gather_.element->glsl, gather_.symbol), lines);
   }
 
@@ -125,37 +126,14 @@ class TileGatherText {
   const TexelWindow window_;
 };
 
-/// The type of a texel's components.
-std::string_view scalarOf(std::string_view type) {
-  return type.front() == 'i' ? "int" : type.front() == 'u' ? "uint" : "float";
-}
-
 }  // namespace
 
 void TileArray::declare(ProgramText& program) const {
-  program.variable(fmt::format("shared {}", isSplit ? scalarOf(type) : type),
-                   fmt::format("{}{}[{}][{}]", name, isSplit ? "[4]" : "", texels[1], pitch()));
+  program.variable(fmt::format("shared {}", type), fmt::format("{}[{}][{}]", name, texels[1], texels[0]));
 }
 
 std::string TileArray::texel(std::string_view row, std::string_view column) const {
-  if (!isSplit) return fmt::format("{}[{}][{}]", name, row, column);
-  return fmt::format("{0}({1}[0][{2}][{3}], {1}[1][{2}][{3}], {1}[2][{2}][{3}], {1}[3][{2}][{3}])", type,
-                     name, row, column);
-}
-
-std::string TileArray::component(std::string_view row, std::string_view column,
-                                 std::string_view component) const {
-  return isSplit ? fmt::format("{}[{}][{}][{}]", name, component, row, column)
-                 : fmt::format("{}[{}][{}][{}]", name, row, column, component);
-}
-
-std::vector<std::string> TileArray::storing(std::string_view row, std::string_view column,
-                                            std::string_view value) const {
-  if (!isSplit) return {fmt::format("{}[{}][{}] = {};", name, row, column, value)};
-  std::vector<std::string> lines;
-  for (int c = 0; c < lanes; ++c)
-    lines.push_back(fmt::format("{}[{}][{}][{}] = {}.{};", name, c, row, column, value, "xyzw"[c]));
-  return lines;
+  return fmt::format("{}[{}][{}]", name, row, column);
 }
 
 void defineTileGather(ProgramText& program, DomainText& domain, const Parameter& gather,

@@ -6,10 +6,8 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "assemble/elements/domain.hpp"
 #include "assemble/glsl/program_text.hpp"
@@ -17,25 +15,16 @@
 
 namespace sk::assemble {
 
-/// Packed texels of a tile in shared memory.
+/// Packed texels of a tile in shared memory, by rows.
 struct TileArray {
   std::string name;
   std::string_view type;  ///< of a texel: "vec4"
   std::array<int, 2> texels;  ///< columns and rows
-  /// Components lie apart, so that invocations that read one component of neighbouring texels find them in different banks.
-  bool isSplit = false;
   bool isExtended = false;  ///< texels beyond the ends of the stream are what Boundary::Clamp gives there
 
-  /// The columns of an array, with some that are not used: rows of invocations begin in different banks.
-  int pitch() const { return texels[0] + (isSplit ? 2 : 0); }
-  std::size_t bytes() const { return static_cast<std::size_t>(pitch() * texels[1]) * 16; }
   void declare(ProgramText& program) const;
-  /// A texel, or one of its components, as expressions.
+  /// A texel, as an expression.
   std::string texel(std::string_view row, std::string_view column) const;
-  std::string component(std::string_view row, std::string_view column, std::string_view component) const;
-  /// The statements that store a texel.
-  std::vector<std::string> storing(std::string_view row, std::string_view column,
-                                   std::string_view value) const;
 };
 
 /// Defines the functions for a gather of rank 2 and of one scalar. Its neighbours are at constant offsets: before the body runs,

@@ -584,7 +584,7 @@ TEST_CASE("glslang accepts tiles of several iterations, with gathers of every ki
                           {16, 32},
                           128,
                           boundary == Boundary::Wrap,
-                          element == &samples::intElement,
+
                           1,
                           {1},
                           {element, element, &samples::intElement},

@@ -67,7 +67,7 @@ class TileText {
   }
   bool isNear(int value) const { return plan_.isNear[static_cast<std::size_t>(value)]; }
   TileArray arrayOf(int value) const {
-    return {fmt::format("sk_tile{}", value), typeOf(value), plan_.texels, plan_.isSplit, isExtended(value)};
+    return {fmt::format("sk_tile{}", value), typeOf(value), plan_.texels, isExtended(value)};
   }
   /// Whether texels beyond the ends of the stream get what gathers with Boundary::Clamp read there, so that these need not ask
   /// where the ends are.
@@ -210,10 +210,10 @@ class TileText {
   void share(const std::vector<int>& values) {
     bool isAnyExtended = false;
     for (const int value : values) {
+      const TileArray array = arrayOf(value);
       forEachTexel([&](int k) {
-        for (const std::string& store :
-             arrayOf(value).storing(fmt::format("sk_mine.y + {}", k), "sk_mine.x", held(value, k)))
-          line(store);
+        line(fmt::format("{} = {};", array.texel(fmt::format("sk_mine.y + {}", k), "sk_mine.x"),
+                         held(value, k)));
       });
       isAnyExtended = isAnyExtended || isExtended(value);
     }
@@ -238,8 +238,7 @@ class TileText {
       line(fmt::format("      {} sk_v = {};", typeOf(value), array.texel("sk_p.y", "sk_p.x")));
       line(fmt::format("      {} = sk_s.x == sk_p.x ? sk_v : sk_s.x < sk_p.x ? sk_v.xxxx : sk_v.wwww;",
                        held(value, k)));
-      for (const std::string& store : array.storing("sk_s.y", "sk_s.x", held(value, k)))
-        line("      " + store);
+      line(fmt::format("      {} = {};", array.texel("sk_s.y", "sk_s.x"), held(value, k)));
       line("    }");
       line("  }");
     });
@@ -372,15 +371,15 @@ std::array<int, 2> TilePlan::halo() const {
 }
 
 std::size_t TilePlan::sharedBytes() const {
-  const TileArray array{.name = {}, .type = {}, .texels = texels, .isSplit = isSplit};
-  return static_cast<std::size_t>(std::ranges::count(isNear, true)) * array.bytes();
+  const auto arrays = static_cast<std::size_t>(std::ranges::count(isNear, true));
+  return arrays * static_cast<std::size_t>(texels[0] * texels[1]) * lanes * sizeof(float);
 }
 
 std::string describe(const TilePlan& plan) {
   std::string text =
-      fmt::format("// {} iterations of {} x {} texels by {}{}{}: {} carried, next {}\n", plan.iterations,
+      fmt::format("// {} iterations of {} x {} texels by {}{}: {} carried, next {}\n", plan.iterations,
                   plan.texels[0], plan.texels[1], plan.invocations, plan.isPeriodic ? ", periodic" : "",
-                  plan.isSplit ? ", split" : "", plan.carried, fmt::join(plan.next, " "));
+                  plan.carried, fmt::join(plan.next, " "));
   for (std::size_t v = 0; v < plan.elements.size(); ++v)
     text += fmt::format("// {}{}\n", plan.elements[v]->name, plan.isNear[v] ? " near" : "");
   for (const TileCall& call : plan.calls) {

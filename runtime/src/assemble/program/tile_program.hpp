@@ -36,7 +36,6 @@ struct TilePlan {
   std::array<int, 2> texels{};  ///< columns and rows of a tile with all that is around it
   int invocations = 0;  ///< of a work group: a multiple of 32, and of the columns
   bool isPeriodic = false;  ///< all gathers wrap; otherwise none does
-  bool isSplit = false;  ///< TileArray::isSplit
   /// Values are numbered: first those of the streams before an iteration, then what calls compute.
   std::size_t carried = 0;  ///< the number of such streams
   std::vector<int> next;  ///< for each of them, the value that it has after an iteration

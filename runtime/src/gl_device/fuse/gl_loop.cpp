@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,9 @@ constexpr std::int64_t timedIterations = 12;
 constexpr int warmRounds = 1, timedRounds = 3;
 /// Passes over fewer elements take as long as it takes to start them, and the waits of a trial would cost more than it finds out.
 constexpr std::int64_t fewElements = 1 << 16;
+/// Tiles must be that many times as fast.
+constexpr double leastGain = 1.05;
+constexpr std::string_view slower = "they take {:.2f} times as long";
 /// The most tiles that are tried.
 constexpr std::size_t mostTried = 4;
 
@@ -87,14 +91,33 @@ class GlLoop final : public LoopRunner {
     iteration_ = std::make_unique<TiledIteration>(device_);
     whyNot_ = iteration_->analyse(loop);
     if (whyNot_.empty() && !given) whyNot_ = whyNotWorthwhile(loop);
-    if (whyNot_.empty()) {
-      const std::size_t most = iteration_->groupBytes();
-      addTiles(iteration_->plans(given ? std::min(most, static_cast<std::size_t>(*given)) : most),
-               given ? 1 : mostTried);
-      if (tried_.empty()) whyNot_ = "a tile and all that is around it take too much of a work group's memory";
-      if (given && !tried_.empty()) chosen_ = &tried_.front();
-    }
+    if (whyNot_.empty()) given ? take(static_cast<std::size_t>(*given)) : prepareTrial();
     if (!whyNot_.empty()) iteration_.reset();
+  }
+
+  /// Takes the first tiles that need at most this much shared memory.
+  void take(std::size_t bytes) {
+    addTiles(iteration_->plans(std::min(iteration_->groupBytes(), bytes)), 1);
+    if (!tried_.empty()) chosen_ = &tried_.front();
+  }
+
+  /// Takes what a trial has found to be the fastest, or prepares one.
+  void prepareTrial() {
+    std::vector<assemble::TilePlan> plans = iteration_->plans(iteration_->groupBytes());
+    const std::optional<TileVerdict> known = device_.programs().tileTrials().find(iteration_->identity());
+    if (known && known->iterations == 0)
+      return endWithout(fmt::format(fmt::runtime(slower), 1 / known->gain));
+    if (known) {
+      const auto fastest =
+          std::ranges::find_if(plans, [&](const assemble::TilePlan& plan) { return known->isFor(plan); });
+      if (fastest != plans.end()) {
+        addTiles({*fastest}, 1);
+        chosen_ = &tried_.front();
+        gain_ = known->gain;
+        return;
+      }
+    }
+    addTiles(std::move(plans), mostTried);
   }
 
   std::string whyNotWorthwhile(const LoopState& loop) const {
@@ -106,6 +129,7 @@ class GlLoop final : public LoopRunner {
   }
 
   void addTiles(std::vector<assemble::TilePlan> plans, std::size_t most) {
+    if (plans.empty()) whyNot_ = "a tile and all that is around it take too much of a work group's memory";
     plans.resize(std::min(plans.size(), most));
     tried_.reserve(plans.size());
     for (assemble::TilePlan& plan : plans) {
@@ -187,7 +211,12 @@ class GlLoop final : public LoopRunner {
     if (round_ < warmRounds + timedRounds || tried_.empty()) return;
     const auto fastest = std::ranges::min_element(tried_, {}, &Tiles::best);
     gain_ = bestByIteration_ / fastest->best;
-    if (gain_ < 1.05) return endWithout(fmt::format("they take {:.2f} times as long", 1 / gain_));
+    const assemble::TilePlan& plan = fastest->call->plan();
+    const bool isFaster = gain_ >= leastGain;
+    device_.programs().tileTrials().keep(
+        iteration_->identity(), isFaster ? TileVerdict{plan.iterations, plan.texels, plan.invocations, gain_}
+                                         : TileVerdict{.gain = gain_});
+    if (!isFaster) return endWithout(fmt::format(fmt::runtime(slower), 1 / gain_));
     Tiles best = std::move(*fastest);
     tried_.clear();
     tried_.push_back(std::move(best));

@@ -37,6 +37,9 @@ class TiledIteration {
   /// tries no others takes the first.
   std::vector<assemble::TilePlan> plans(std::size_t bytes) const;
 
+  /// What the speed of the loop depends on, apart from the device.
+  std::string identity() const;
+
   /// The iterations that must run call by call after tiles, so that all streams have what they should.
   std::int64_t after() const { return after_; }
   /// The streams that have old elements until then.
