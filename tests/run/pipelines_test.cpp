@@ -2,12 +2,11 @@
 //
 // Promises: a pipeline computes the bits that its calls compute one by one, on every target, in loops, and with every kind of parameter;
 // what it cannot do is an error that names the streams. The drawn pipelines have any calls in any order.
-#include <cstring>
-
 #include "drawn_pipelines.hpp"
 #include "error_of.hpp"
 #include "pipelines.sk.hpp"
 #include "support/devices.hpp"
+#include "support/same_bits.hpp"
 #include "support/values.hpp"
 
 using namespace run_tests;
@@ -28,12 +27,6 @@ Field filled(sk::Device& device, const sk::Shape& shape, std::uint32_t seed = 0)
   Field field = device.stream<float>(shape);
   field.write(values(shape.size(), seed));
   return field;
-}
-
-template <class T>
-bool haveSameBits(const sk::Stream<T>& a, const sk::Stream<T>& b) {
-  const auto x = a.read(), y = b.read();
-  return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
 }
 
 }  // namespace
