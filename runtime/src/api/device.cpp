@@ -291,7 +291,17 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
                               element.name),
                   Error::Kind::Type);
     }
-    detail::StreamOwner stream(state().createStream(element, shape, storage).release());
+    const auto make = [&] {
+      return detail::StreamOwner(state().createStream(element, shape, storage).release());
+    };
+    detail::StreamOwner stream;
+    try {
+      stream = make();
+    } catch (const std::bad_alloc&) {
+      if (state().keptLocals.empty()) throw;
+      state().keptLocals.clear();
+      stream = make();
+    }
     if (!name.empty()) stream->setName(name);
     if (checksWritten()) trackWritten(*stream);
     if (results::Recorder* const recorder = state().results) {
@@ -335,7 +345,10 @@ void Device::finish() {
     state().finish();
   });
 }
-void Device::release() { state().release(); }
+void Device::release() {
+  state().keptLocals.clear();
+  state().release();
+}
 void Device::makeCurrent() {
   withHostMemory("makeCurrent", [&] { state().makeCurrent(); });
 }

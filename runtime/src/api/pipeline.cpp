@@ -15,6 +15,7 @@
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/error.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -262,7 +263,7 @@ class PipelineCall {
 }  // namespace
 
 void run(const Pipeline& pipeline, std::span<const Argument> arguments, const CallOptions& options) {
-  PipelineCall(pipeline, arguments, options).run();
+  withHostMemory(pipeline.name, [&] { PipelineCall(pipeline, arguments, options).run(); });
 }
 
 }  // namespace sk
