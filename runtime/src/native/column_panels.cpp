@@ -9,6 +9,7 @@
 #include "native/gather_copies.hpp"
 #include "native/scalars.hpp"
 #include "sk/native/parallel.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -68,15 +69,21 @@ bool ColumnPanels::has(std::size_t parameter) const {
 
 void ColumnPanels::fill() {
   const std::int64_t panels = (columns_.end - columns_.begin + width_ - 1) / width_;
-  for (Gather& gather : gathers_) {
-    const std::int64_t rows = rowsOf(gather.from);
-    for (std::size_t scalar = 0; scalar < gather.bytes.size(); ++scalar) {
-      if (gather.memory.size() == scalar) {
+  try {
+    for (Gather& gather : gathers_) {
+      while (gather.memory.size() < gather.bytes.size()) {
+        const std::int64_t elements = panels * rowsOf(gather.from) * width_;
         gather.memory.push_back(
-            allocated(static_cast<std::size_t>(panels * rows * width_) * gather.bytes[scalar]));
+            allocated(static_cast<std::size_t>(elements) * gather.bytes[gather.memory.size()]));
         gather.arrays.push_back(gather.memory.back().get());
       }
-      native::inParallel(rows, panels * width_, native::Deal::Evenly,
+    }
+  } catch (const NoMemory&) {  // the gathers can be read where they are, too
+    gathers_.clear();
+  }
+  for (const Gather& gather : gathers_) {
+    for (std::size_t scalar = 0; scalar < gather.bytes.size(); ++scalar) {
+      native::inParallel(rowsOf(gather.from), panels * width_, native::Deal::Evenly,
                          [&](Range range) { copyRows(gather, scalar, range.begin, range.end); });
     }
   }

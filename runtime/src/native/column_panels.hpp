@@ -32,7 +32,7 @@ class ColumnPanels {
   /// The columns of a panel.
   std::int64_t width() const { return width_; }
 
-  /// Copies the gathers' elements, on all threads. Throws NoMemory.
+  /// Copies the gathers' elements, on all threads. Without enough memory, there are no panels from here on.
   void fill();
   /// Lets a frame read the panels of the columns from `x` on, where the call computes elements from x = 0, `width()`, 2 *
   /// width() ... after its first one. Indices in other columns read the nearest column of the panel.

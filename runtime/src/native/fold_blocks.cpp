@@ -249,8 +249,9 @@ void foldBlocks(const FoldProgram& program, const Extents& domain, const Extents
   const std::size_t bytes = program.shape.bytes();
   std::vector<std::byte> states(ofBlock == 1 ? 0 : static_cast<std::size_t>(pieces.count()) * bytes);
   const std::optional<WholePieces> whole = ofBlock == 1 ? std::nullopt : WholePieces::of(program, pieces);
-  PerWorker<PieceFolder> folders(native::threadsFor(pieces.count(), pieces.elementsOfOne()));
-  native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range, int worker) {
+  const std::int64_t cost = whole ? WholePieces::cost : pieces.elementsOfOne();
+  PerWorker<PieceFolder> folders(native::threadsFor(pieces.count(), cost));
+  native::inParallel(pieces.count(), cost, deal, [&](Range range, int worker) {
     for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
       if (whole && piece < whole->count()) {
         whole->fold(piece, states.data() + static_cast<std::size_t>(piece) * bytes);

@@ -46,7 +46,6 @@ WholePieces::WholePieces(const FoldProgram& program, std::int64_t count)
 }
 
 void WholePieces::fold(std::int64_t piece, std::byte* result) const {
-  constexpr std::int64_t fetched = 2048;  // bytes of the next piece, which arrive while columns are combined
   alignas(cacheLine) std::byte memory[stateBytes];
   std::array<void*, mostArrays> arrays, state, later;
   std::byte* next = memory;
@@ -64,10 +63,6 @@ void WholePieces::fold(std::int64_t piece, std::byte* result) const {
                       .rows = 1,
                       .rowSteps = nullptr};
   fold_.function(fold_.frame, &chunk, state.data(), side_, leafRounds, columns / side_, 1);
-  for (std::size_t i = 0; i < arrayCount_; ++i) {
-    const auto* const end = static_cast<const std::byte*>(arrays[i]) + BlockPieces::most * arrays_[i].bytes;
-    for (std::int64_t byte = 0; byte < fetched; byte += cacheLine) __builtin_prefetch(end + byte);
-  }
   // neighbouring leaves first, then the columns
   for (std::int64_t half = columns / 2; half > 0; half /= 2) {
     for (std::size_t i = 0; i < scalarCount_; ++i)

@@ -22,6 +22,9 @@ class alignas(64) WholePieces {
   /// one behind the other, has outputs, or takes too much memory. `program` must outlive the result.
   static std::optional<WholePieces> of(const FoldProgram& program, const BlockPieces& pieces);
 
+  /// What folding a piece costs, in elements of the simplest kernels, which read and write more than twice as much.
+  static constexpr std::int64_t cost = BlockPieces::most / 2;
+
   /// The number of pieces that fold() can fold, which come first.
   std::int64_t count() const { return count_; }
   /// Folds a piece, and packs its accumulators (StateColumns::pack).
