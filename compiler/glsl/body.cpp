@@ -171,16 +171,24 @@ GlslBody glslBody(const GlslContext& given) {
   context.copied = &copied;
   const Used byParams(context), used = usedBy(context);
   GlslBody text{structsText(context, used), "", used.intrinsics()};
-  for (const std::string& polyfill : used.polyfillTexts())
-    (byParams.hasPolyfill(polyfill) ? text.declarations : text.body) += polyfill + "\n";
+  for (const std::string& polyfill : used.polyfillTexts()) {
+    const bool isOfParams = byParams.hasPolyfill(polyfill);
+    (isOfParams ? text.declarations : text.body) += polyfill + "\n";
+    if (!isOfParams) text.helpers.push_back(polyfill.size() + 1);
+  }
   text.declarations += constantsText(context, [&](ConstantId id) { return byParams.hasConstant(id); });
-  text.body += constantsText(
-      context, [&](ConstantId id) { return used.hasConstant(id) && !byParams.hasConstant(id); });
+  text.body += constantsText(context, [&](ConstantId id) {
+    const bool isWanted = used.hasConstant(id) && !byParams.hasConstant(id);
+    if (isWanted) text.names.push_back(context.types.constantName(id));
+    return isWanted;
+  });
   LineWriter writer;
   const std::vector<FunctionId> functions = ownFunctionsOf(context.module, context.kernel);
   for (const FunctionId id : functions) {
     if (id != functions.front()) writer.raw("\n");
     writeFunction(context, id, writer);
+    const std::string& name = context.names.function(id);
+    if (std::ranges::find(text.names, name) == text.names.end()) text.names.push_back(name);
   }
   text.body += writer.take();
   return text;

@@ -17,6 +17,8 @@ struct GlslBody {
   std::string declarations;   ///< structs, and constants that borders and identities use
   std::string body;
   std::vector<sk::program::IntrinsicUse> intrinsics;  ///< those that the assembler must define
+  std::vector<std::size_t> helpers = {};  ///< the lengths of the polyfills with which the body begins
+  std::vector<std::string> names = {};  ///< of the constants and functions that follow
 };
 
 GlslBody glslBody(const GlslContext& context);

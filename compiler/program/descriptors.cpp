@@ -263,10 +263,19 @@ class Builder {
             .usesLongs = usesLongs(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
             .intrinsics = storage_.keep(std::move(text.intrinsics)),
+            .definitions = definitionsOf(text),
             .tables = storage_.keep(std::move(tables)),
             .drawn = targets_.fragment && !kernel.isNativeOnly,
             .dispatched = targets_.compute && !kernel.isNativeOnly,
             .code = codeOf_ ? codeOf_(id) : nullptr};
+  }
+
+  std::span<const sk::program::Definition> definitionsOf(GlslBody& text) {
+    std::vector<sk::program::Definition> definitions;
+    for (const std::size_t bytes : text.helpers)
+      definitions.push_back({.bytes = static_cast<std::uint32_t>(bytes)});
+    for (std::string& name : text.names) definitions.push_back({.name = storage_.keep(std::move(name))});
+    return storage_.keep(std::move(definitions));
   }
 
   /// The GLSL for Reduction::addition.

@@ -293,6 +293,15 @@ struct Members<sk::CallOptions> {
 };
 
 template <>
+struct Members<p::Definition> {
+  static constexpr std::string_view type = "Definition";
+  static constexpr std::tuple list{
+      Option{"name", &p::Definition::name},
+      Option{"bytes", &p::Definition::bytes},
+  };
+};
+
+template <>
 struct Members<p::Kernel> {
   static constexpr std::string_view type = "Kernel";
   static constexpr std::tuple list{
@@ -310,6 +319,8 @@ struct Members<p::Kernel> {
       Option{"usesLongs", &p::Kernel::usesLongs},
       Option{"usesExactSums", &p::Kernel::usesExactSums},
       Option{"intrinsics", &p::Kernel::intrinsics, Part::Intrinsics},
+      CppOption{"definitions", &p::Kernel::definitions,
+                Part::Definitions},  // only native programs fuse calls
       CountedOption{"plans", &p::Kernel::plans, "planCount", &p::Kernel::planCount, Part::Plans},
       Option{"options", &p::Kernel::options},
       Option{"half", &p::Kernel::half, Part::Half},

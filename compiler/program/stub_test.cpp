@@ -107,8 +107,9 @@ TEST_CASE("the source") {
      .rank = 2, .boundary = Boundary::Wrap, .usesAt = true, .usesNear = true, .reach = 1},
     {.name = "v", .symbol = "v", .role = Role::Output, .element = &ElementTraits<float>::element()},
 };
-
-constexpr Kernel diffuseKernel = {
+)"));
+  CHECK(contains(source, "{.name = \"diffuse\"}"));
+  CHECK(contains(source, R"(constexpr Kernel diffuseKernel = {
     .name = "heat::diffuse",
     .entry = "diffuse",
     .declarations = {},
@@ -116,7 +117,8 @@ constexpr Kernel diffuseKernel = {
     .weight = 51,
     .parameters = diffuseParameters,
     .sources = sources,
-    .usesIndex = true};
+    .usesIndex = true,
+    .definitions = diffuseDefinitions};
 )"));
   CHECK(contains(source, R"(constexpr Kernel nearestKernel = {
     .name = "nearest",
@@ -125,7 +127,8 @@ constexpr Kernel diffuseKernel = {
     .body = nearestBody,
     .weight = 9,
     .parameters = nearestParameters,
-    .sources = sources};
+    .sources = sources,
+    .definitions = nearestDefinitions};
 
 constexpr Reduction nearestReduction = {
     .fold = nearestKernel,

@@ -234,6 +234,13 @@ struct IntrinsicUse {
   bool ofDouble = false;  ///< it is called with one double
 };
 
+/// What the body of a kernel defines beside its entry, for programs that hold the bodies of several kernels. A body begins with
+/// functions of skc's own, whose text is the same wherever a kernel needs them; functions and constants of the .sk file follow.
+struct Definition {
+  std::string_view name = {};  ///< of a function or constant of the .sk file; empty: skc's own
+  std::uint32_t bytes = 0;  ///< skc's own: the length of the text
+};
+
 struct Plan;
 struct Kernel;
 struct AssertionCheck;
@@ -281,6 +288,8 @@ struct Kernel {
   bool usesLongs = false;  ///< declarations or body use sk_long or sk_ulong
   bool usesExactSums = false;  ///< the body has floats that no driver may simplify: sk_precise, sk_keep()
   std::span<const IntrinsicUse> intrinsics = {};  ///< the intrinsics that declarations or body call
+  /// Of the body, in its order. Empty in code that an older skc has generated.
+  std::span<const Definition> definitions = {};
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, least restrictive first
   std::uint8_t planCount = 0;
   CallOptions options = {};  ///< the declaration's choices, which a call may override
@@ -350,6 +359,30 @@ struct CompensatedReduction;
 struct FoldParts;
 struct WideReduction;
 struct ExactSum;
+struct Reduction;
+
+/// A kernel of a pipeline, and its arguments: those of the pipeline, or local streams, which are the temporaries.
+struct PipelinePass {
+  const Kernel* kernel;  ///< the fold of a reduction or a scan
+  const Reduction* reduction = nullptr;
+  bool isScan = false;
+  bool isOverDomain = true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
+  std::span<const PassOperand> operands = {};  ///< one per parameter
+};
+
+struct PipelineParameter {
+  std::string_view name;  ///< as declared, for messages
+  Role role;
+};
+
+/// Kernels that are called in order, with streams between them that nothing else sees. A local stream is an output of the
+/// passes that write it, and has the shape of the pipeline's domain: that of its outputs or, if it has none, of its inputs.
+struct Pipeline {
+  std::string_view name;  ///< qualified, for messages
+  std::span<const PipelineParameter> parameters;  ///< in order of declaration
+  std::span<const std::string_view> locals;  ///< their names
+  std::span<const PipelinePass> passes;
+};
 
 /// Most elements, or partial results, that a run folds one after the other: as many terms as the digits of an exact sum
 /// have room for.

@@ -156,6 +156,7 @@ enum class Work : std::uint8_t {
   Owners,  ///< a compute program: which element stores to an element of a scatter output last
   Groups,  ///< a compute program: its outputs, and all append outputs
   Folds,  ///< a compute program: its outputs, and its accumulators (reduce/group_fold.hpp)
+  Tiles,  ///< a compute program: several calls of several kernels, by tiles (program/tile_program.hpp)
 };
 
 struct Task {

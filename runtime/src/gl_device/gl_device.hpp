@@ -10,6 +10,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/condition.hpp"
+#include "assemble/program/tile_program.hpp"
 #include "device/device_state.hpp"
 #include "gl/open_context.hpp"
 #include "gl/queue_points.hpp"
@@ -69,6 +70,7 @@ class GlDevice final : public DeviceState {
   void makeCurrent() override;
   void checkProcess() const override { context_.handle().checkProcess(); }
   void run(const ResolvedCall& call) override;
+  std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;  // fuse/gl_call.cpp
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
@@ -94,6 +96,8 @@ class GlDevice final : public DeviceState {
     return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
   }
 
+  /// Runs a kernel that computes its domain by tiles. The call has no plan and no box.
+  void runTiles(const ResolvedCall& call, const assemble::TilePlan& plan);
   /// run() without GlPrograms::checkOptions(), whose tests of the device call this.
   void runUnchecked(const ResolvedCall& call);
   void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,

@@ -18,6 +18,7 @@
 #include "device/unload_watch.hpp"
 #include "gl/texture.hpp"
 #include "gl_device/append/append_programs.hpp"
+#include "gl_device/fuse/tile_trials.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
@@ -104,6 +105,8 @@ class GlPrograms {
 
   MadeKernels& scalarKernels() { return scalarKernels_; }
   MadeKernels& mergeKernels() { return mergeKernels_; }
+  MadeKernels& fusedKernels() { return fusedKernels_; }
+  TileTrials& tileTrials() { return tileTrials_; }
   /// Delete all programs of a kernel or reduction that is about to end.
   void forget(const program::Kernel& kernel) noexcept {
     for (auto& [key, cache] : caches_) cache.forget(kernel);
@@ -139,6 +142,8 @@ class GlPrograms {
   MadeKernels scalarKernels_{*this};
   MadeKernels mergeKernels_{*this};
   std::array<bool, gl::formatCount> stored_{};  ///< mayStore(), by Format::index
+  MadeKernels fusedKernels_{*this};
+  TileTrials tileTrials_{device_};
   std::map<ProgramCacheKey, ProgramCache> caches_;
   ProgramCache* selected_ = nullptr;
   ProgramCacheKey selectedKey_;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,13 +14,13 @@
 #include <fmt/format.h>
 
 #include "device/loop_state.hpp"
+#include "device/loop_tiles.hpp"
 #include "device/write_scope.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
 #include "native/thread_pool.hpp"
 #include "native/tiled_call.hpp"
 #include "native/time_tiles.hpp"
-#include "sk/error.hpp"
 #include "sk/native/parallel.hpp"
 #include "support/host_limits.hpp"
 
@@ -75,25 +73,6 @@ class ArrayNumbers {
   std::unordered_map<NativeStream*, std::array<std::size_t, 2>> arrays_;
   std::vector<std::size_t> written_;
 };
-
-/// Bytes of the cache that a thread's tile may take: SK_LOOP_TILES says how many, 0 if it is "off".
-std::int64_t cacheOfTile() {
-  if (const char* const given = std::getenv("SK_LOOP_TILES")) {
-    const std::string_view text = given;
-    if (text == "off") return 0;
-    std::int64_t bytes = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
-    if (error == std::errc() && end == text.data() + text.size() && bytes > 0) return bytes;
-    throw Error(fmt::format(
-        "SK_LOOP_TILES is '{}'; give \"off\", or the bytes of the cache that a tile of a loop may take",
-        text));
-  }
-  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
-  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
-  const std::int64_t found = bytesOfCache(2);
-  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
-  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
-}
 
 /// The most states of its streams' arrays for which a call keeps its code.
 constexpr std::size_t mostCodes = 16;
@@ -304,7 +283,6 @@ ArrayNumbers TiledLoop::forEachCall(const LoopState& loop, const TiledGroup& gro
 void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mostIterations) const {
   native::TileProblem problem;
   problem.extent = group.calls.front()->extent();
-  problem.cache = cacheOfTile();
   problem.threads = native::mostThreads();
   problem.mostIterations = mostIterations;
   struct Array {
@@ -340,6 +318,7 @@ void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mo
                 [&](const TiledCall&, std::span<const TileAccess> accesses) { skews.add(accesses); });
     return skews.most();
   };
+  problem.cache = native::cacheOfTile(problem.skew(two) == Extents{});
   group.choice = native::chooseTiles(problem);
 }
 

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cstdlib>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "assemble/elements/arguments.hpp"
 #include "assemble/elements/planes.hpp"
+#include "assemble/elements/texel_window.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -29,7 +29,12 @@ class GatherText {
  public:
   GatherText(ProgramText& program, const Position& here, const Parameter& parameter,
              const StreamAccess& access)
-      : program_(program), here_(here), parameter_(parameter), access_(access), rank_(parameter.rank) {
+      : program_(program),
+        here_(here),
+        parameter_(parameter),
+        access_(access),
+        rank_(parameter.rank),
+        window_(parameter) {
     assert(rank_ >= 1 && rank_ <= 4 && access.addressing != Addressing::Aligned);
   }
 
@@ -109,7 +114,7 @@ class GatherText {
       if (!isRow) lines.emplace_back("sk_out = sk_out || (sk_d.y != 0 && uint(sk_p.y) >= uint(sk_n.y));");
       lines.push_back(fmt::format("if (sk_out) return {};", parameter_.border));
     }
-    chooseTexel(lines);
+    window_.chooseTexel(packedType(parameter_), lines);
     lines.push_back(fmt::format("return {};", fetchedComponent(program_, parameter_, "sk_v", "sk_x & 3")));
     program_.function(
         fmt::format("{} sk_near_{}({} sk_d)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
@@ -303,13 +308,9 @@ class GatherText {
                  : fmt::format("({} + ({}.xy >> ivec2(2, 0)))", here, uniform("low"));
   }
 
-  /// How many texels away neighbours may be: left and right, and above and below.
-  int reachInX() const { return (parameter_.reach + lanes - 1) / lanes; }
-  int reachInY() const { return rank_ == 1 ? 0 : parameter_.reach; }
-  std::string texelName(int x, int y) const {
-    const auto part = [](int offset) { return fmt::format("{}{}", offset < 0 ? "m" : "", std::abs(offset)); };
-    return fmt::format("sk_texel_{}_{}_{}", part(x), part(y), parameter_.symbol);
-  }
+  int reachInX() const { return window_.reachInX(); }
+  int reachInY() const { return window_.reachInY(); }
+  std::string texelName(int x, int y) const { return window_.texelName(x, y); }
 
   /// Whether the work group fetches all texels in reach of its invocations into shared memory. A GPU fetches
   /// only a few texels per clock, and each is needed by as many invocations as it has neighbours.
@@ -415,18 +416,6 @@ class GatherText {
                : fmt::format("{} ? sk_v : sk_v.wzyx", isInside);
   }
 
-  /// Sets sk_v to the texel that is sk_c texels to the right and sk_d.y below.
-  void chooseTexel(std::vector<std::string>& lines) const {
-    for (int y = -reachInY(); y <= reachInY(); ++y) {
-      std::string row;
-      for (int x = -reachInX(); x < reachInX(); ++x)
-        row += fmt::format("sk_c == {} ? {} : ", x, texelName(x, y));
-      row += texelName(reachInX(), y);
-      lines.push_back(y == -reachInY() ? fmt::format("{} sk_v = {};", packedType(parameter_), row)
-                                       : fmt::format("if (sk_d.y == {}) sk_v = {};", y, row));
-    }
-  }
-
   /// Maps a texel index that is less than an extent out of bounds into bounds.
   std::string broughtOnce(std::string_view index, std::string_view extent) {
     switch (parameter_.boundary) {
@@ -489,6 +478,7 @@ class GatherText {
   const Parameter& parameter_;
   const StreamAccess& access_;
   int rank_;
+  const TexelWindow window_;
 };
 
 }  // namespace

@@ -16,6 +16,8 @@
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/scatter_programs.hpp"
 #include "assemble/program/sample_kernels.hpp"
+#include "assemble/program/several_bodies.hpp"
+#include "assemble/program/tile_program.hpp"
 #include "assemble/reduce/group_fold.hpp"
 #include "assemble/reduce/reduce_program.hpp"
 #include "assemble/sort/radix_program.hpp"
@@ -560,5 +562,54 @@ TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by 
       }
     }
   }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts tiles of several iterations, with gathers of every kind") {
+  Programs programs("tiles");
+  const Profile& profile = *findProfile("glsl430");
+  for (const Element* const element : {&samples::floatElement, &samples::intElement}) {
+    for (const Boundary boundary : boundaries) {
+      const samples::EveryAccess every(*element, element == &samples::floatElement ? "1.0" : "-1", 2,
+                                       boundary, 1);
+      constexpr std::array definitions = {sk::program::Definition{.name = "every"}};
+      Kernel kernel = every.kernel();
+      kernel.definitions = definitions;
+      SeveralBodies bodies;
+      const std::vector<std::string> symbols = {"", "", "c0_a", "", ""};
+      const TileCall call{
+          &kernel, *bodies.add(kernel, symbols), {"sk_arg_c", "", "", "", ""}, {-1, 0, 0, 1, 2}, symbols,
+          {1, 1}};
+      const TilePlan plan{4,
+                          {16, 32},
+                          128,
+                          boundary == Boundary::Wrap,
+
+                          1,
+                          {1},
+                          {element, element, &samples::intElement},
+                          {true, false, false},
+                          {call}};
+      const std::string body = bodies.text();
+      const std::array parameters = {
+          Parameter{.name = "s", .symbol = "s0", .role = Role::Gather, .element = element, .rank = 2},
+          Parameter{.name = "o", .symbol = "o0", .role = Role::Output, .element = element},
+          Parameter{.name = "c", .symbol = "c", .role = Role::Uniform, .element = element}};
+      const Kernel whole{.name = "tiles",
+                         .entry = {},
+                         .declarations = {},
+                         .body = body,
+                         .parameters = parameters,
+                         .sources = {},
+                         .usesIndex = true,
+                         .usesExtent = true};
+      for (const bool packed : {false, true}) {
+        const StreamAccess access{.addressing = Addressing::Plane, .packed = packed};
+        programs.add(profile,
+                     tileProgram(profile, whole, {.domainPacked = true, .access = {access, {}, {}}}, plan));
+      }
+    }
+  }
+  CHECK(programs.count() == 16);
   checkAccepted(programs);
 }

@@ -199,6 +199,7 @@ std::string_view stepOf(const assemble::Task& task) {
     case assemble::Work::Owners: return "owners";
     case assemble::Work::Groups: return "append";
     case assemble::Work::Folds: return "fold";
+    case assemble::Work::Tiles: return "tiles";
   }
   return {};
 }

@@ -192,8 +192,8 @@ void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call,
 
 using program::Kernel;
 
-/// Runs one call with checked arguments and a nonempty domain.
-void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
+/// Runs one call with checked arguments and a nonempty domain; by tiles if they are given.
+void runOverOutputs(GlDevice& device, const ResolvedCall& call, const assemble::TilePlan* tiles = nullptr) {
   const Kernel& kernel = call.kernel;
   const KernelOperands operands(device, kernel, call.arguments, call.specs, call.plan, {}, call.options.box,
                                 call.place);
@@ -205,13 +205,18 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
     runPlan(device, *call.plan, {operands.get(), drawn, operands.domain(), operands.layout(), rects.get()},
             [&] { targets.begin(); });
   } else {
-    ProgramCache& programs = device.programs().selectedFor(kernel, targets.planes());
+    ProgramCache& programs = tiles == nullptr ? device.programs().selectedFor(kernel, targets.planes())
+                                              : device.programs().selected();
     if (call.options.target == Target::Compute && programs.stage() == assemble::Stage::Fragment)
       device.programs().failForImages(kernel);
-    KernelProgram& program = programs.kernelProgram(kernel, operands.get(), operands.domain());
+    KernelProgram& program = tiles == nullptr
+                                 ? programs.kernelProgram(kernel, operands.get(), operands.domain())
+                                 : programs.tileProgram(kernel, *tiles, operands.get(), operands.domain());
     const PreparedPass pass = preparedPass(device, program, targets.planes());
+    const assemble::Task task{.work = tiles == nullptr ? assemble::Work::Elements : assemble::Work::Tiles};
     targets.begin();
-    runKernel(device, pass, kernel, operands.get(), operands.domain(), rects.get(), targets.planes());
+    runKernel(device, pass, kernel, operands.get(), operands.domain(), rects.get(), targets.planes(), {},
+              task);
   }
   targets.putInPlace();
 }
@@ -221,6 +226,14 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
 void GlDevice::run(const ResolvedCall& call) {
   programs_.checkOptions(call.kernel, call.options);
   runUnchecked(call);
+}
+
+void GlDevice::runTiles(const ResolvedCall& call, const assemble::TilePlan& plan) {
+  programs_.checkOptions(call.kernel, call.options);
+  const DeviceScope scope(*this);
+  const gl::LabelGroup group(context().labels(), call.kernel.name);
+  programs_.select(call.options, assemble::Stage::Compute);
+  runOverOutputs(*this, call, &plan);
 }
 
 void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> arguments,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels that the runtime writes for a device, in as many forms as its calls need: for operations with scalars, and for merging
-// texels. Programs are found by their kernels' addresses, so kernels are kept as long as their programs: the least recently
+// Kernels that the runtime writes for a device, in as many forms as its calls need: for operations with scalars, for merging
+// texels, and for calls of loops that run together. Programs are found by their kernels' addresses, so kernels are kept as long as their programs: the least recently
 // used ones are deleted with them.
 #pragma once
 
@@ -10,8 +10,10 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sk/program.hpp"
@@ -29,11 +31,15 @@ struct MadeKernel {
   /// Copies of names and of elements, for descriptors that may be unloaded before the kernel ends.
   std::string_view own(std::string_view name) { return names_.emplace_back(name); }
   const program::Element& own(const program::Element& element);
+  std::span<const program::IntrinsicUse> own(std::vector<program::IntrinsicUse> intrinsics) {
+    return intrinsics_ = std::move(intrinsics);
+  }
 
  private:
   std::deque<std::string> names_;
   std::deque<std::vector<program::Field>> fields_;
   std::deque<program::Element> elements_;
+  std::vector<program::IntrinsicUse> intrinsics_;
 };
 
 class MadeKernels {

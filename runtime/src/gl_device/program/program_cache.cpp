@@ -116,7 +116,7 @@ const ProgramKey& ProgramCache::look(const program::Kernel& kernel, std::span<co
   return looked_;
 }
 
-KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
+KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const Whole& whole,
                                            std::span<const Operand> operands,
                                            const assemble::RegionLayout& domain, const assemble::Task& task) {
   forgetUnloaded();
@@ -128,7 +128,8 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const 
     checkUnits(assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs, variant.access, task);
     auto started = startedKernels_.extract(key);
     auto result = makeKernelProgram(
-        kernel, variant, started.empty() ? begin(kernel, variant, reduction) : std::move(started.mapped()));
+        kernel, variant, started.empty() ? begin(kernel, variant, whole) : std::move(started.mapped()));
+    if (whole.tiles != nullptr) result->workGroup = {whole.tiles->stored()[0], whole.tiles->stored()[1], 1};
     makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
     Kept<KernelProgram> kept{std::move(result), ++clock_, program::LinkedFile::objectOf(&kernel)};
     return *kernels_.insert_or_assign(key, std::move(kept)).first->second.program;
@@ -145,7 +146,7 @@ bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<c
     return false;
   }
   if (!startedKernels_.contains(key)) {
-    startedKernels_.emplace(key, begin(kernel, key.variant));
+    startedKernels_.emplace(key, begin(kernel, key.variant, {}));
   }
   return true;
 }
@@ -308,8 +309,10 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
 }
 
 ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant,
-                                 const program::Reduction* reduction) {
-  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant, reduction);
+                                 const Whole& whole) {
+  if (whole.tiles != nullptr)
+    return {device_, {.vertex = {}, .main = assemble::tileProgram(profile_, kernel, variant, *whole.tiles)}};
+  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant, whole.reduction);
   return {device_, {std::move(programs.vertex), std::move(programs.main)}};
 }
 

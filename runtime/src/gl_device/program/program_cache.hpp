@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "assemble/append/histo_pyramid.hpp"
+#include "assemble/program/tile_program.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/region_layout.hpp"
 #include "device/unload_watch.hpp"
@@ -116,7 +117,7 @@ struct KernelProgram {
   gl::Program program;
   assemble::Stage stage = assemble::Stage::Fragment;
   gl::IntUniform rect;  ///< compute programs: the texels that a dispatch writes
-  std::array<GLint, 3> workGroup{1, 1, 1};
+  std::array<GLint, 3> workGroup{1, 1, 1};  ///< the texels of a work group
   gl::IntUniform foldGroups, foldResult;  ///< of programs that fold (assemble/reduce/group_fold.hpp)
   bool isGrouped = false;  ///< each work group computes one texel
   std::int32_t loopNumber =
@@ -157,12 +158,18 @@ class ProgramCache {
   /// rejects the program.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                const assemble::RegionLayout& domain, const assemble::Task& task = {}) {
-    return kernelProgram(kernel, nullptr, operands, domain, task);
+    return kernelProgram(kernel, {}, operands, domain, task);
+  }
+  /// The program that computes a domain by tiles (assemble::Work::Tiles); `kernel` belongs to this plan alone.
+  KernelProgram& tileProgram(const program::Kernel& kernel, const assemble::TilePlan& plan,
+                             std::span<const Operand> operands, const assemble::RegionLayout& domain) {
+    return kernelProgram(kernel, {.tiles = &plan}, operands, domain, {.work = assemble::Work::Tiles});
   }
   /// The program that folds beside the outputs of a reduction's fold (assemble::Work::Folds).
   KernelProgram& foldProgram(const program::Reduction& reduction, std::span<const Operand> operands,
                              const assemble::RegionLayout& domain) {
-    return kernelProgram(reduction.fold, &reduction, operands, domain, {.work = assemble::Work::Folds});
+    return kernelProgram(reduction.fold, {.reduction = &reduction}, operands, domain,
+                         {.work = assemble::Work::Folds});
   }
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
@@ -179,12 +186,17 @@ class ProgramCache {
   assemble::Stage stage() const { return profile_.stage; }
 
  private:
+  /// What a program depends on besides its kernel and variant.
+  struct Whole {
+    const program::Reduction* reduction = nullptr;  ///< Work::Folds
+    const assemble::TilePlan* tiles = nullptr;  ///< Work::Tiles
+  };
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
 
   /// The key of a kernel's program for these operands. It is good until the next look().
   const ProgramKey& look(const program::Kernel& kernel, std::span<const Operand> operands,
                          const assemble::RegionLayout& domain, const assemble::Task& task);
-  KernelProgram& kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
+  KernelProgram& kernelProgram(const program::Kernel& kernel, const Whole& whole,
                                std::span<const Operand> operands, const assemble::RegionLayout& domain,
                                const assemble::Task& task);
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
@@ -202,8 +214,7 @@ class ProgramCache {
   void findTargetUniforms(KernelProgram& result, const program::Kernel& kernel);
   void findListUniforms(KernelProgram& result);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
-  ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant,
-                     const program::Reduction* reduction = nullptr);
+  ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant, const Whole& whole);
   ProgramBuild begin(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
   /// Throws sk::Error, with the driver's messages, if the driver rejects the program.
   void finish(KernelProgram& result, const program::Kernel& kernel, ProgramBuild&& begun);

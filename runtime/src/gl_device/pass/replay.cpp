@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops on a GL device. Calls run as ever while a log notes their GL commands, until the streams' textures are again
+// What is repeated runs as ever while a log notes its GL commands, until the streams' textures are again
 // where they were before an earlier iteration: swaps, and outputs that are drawn to a second texture, move them. From
 // then on the logs of this cycle are run in place of the calls, each followed by a gate (gl/loop_gate.hpp) in a loop
 // with a condition. Whatever makes the textures differ from what the logs expect begins a new cycle.
+#include "gl_device/pass/replay.hpp"
+
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,7 +17,6 @@
 
 #include <fmt/format.h>
 
-#include "device/loop_runner.hpp"
 #include "device/loop_state.hpp"
 #include "device/write_scope.hpp"
 #include "gl/command_log.hpp"
@@ -34,13 +36,14 @@ namespace {
 constexpr std::size_t mostIterations = 128;
 constexpr int mostSpoiled = 4;
 
-class ReplayedLoop final : public LoopRunner {
+class NotedReplay final : public Replay {
  public:
-  explicit ReplayedLoop(GlDevice& device)
+  NotedReplay(GlDevice& device, std::function<void(LoopState&)> once)
       : device_(device),
+        once_(std::move(once)),
         hasGate_(device.capabilities.hasCompute &&
                  (device.traits.endsLoops || device.target == Target::Compute)) {}
-  ~ReplayedLoop() override { drop(); }
+  ~NotedReplay() override { drop(); }
 
   void run(LoopState& loop, std::int64_t times) override {
     while (times > 0) {
@@ -48,12 +51,6 @@ class ReplayedLoop final : public LoopRunner {
       step(loop);
       --times;
     }
-  }
-
-  std::string plan(LoopState& loop) override {
-    return fmt::format(
-        "{} calls, whose OpenGL commands are recorded and repeated{}\n", loop.calls().size(),
-        mayReplay() ? "" : ", which tracing, labels or calls with changing commands prevent here");
   }
 
   std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) override {
@@ -73,6 +70,10 @@ class ReplayedLoop final : public LoopRunner {
       isDone = isTrue(done);
     }
     return ran;
+  }
+
+  bool mayReplay() const override {
+    return !device_.trace && !device_.context().labels().isOn() && spoiled_ < mostSpoiled;
   }
 
  private:
@@ -102,10 +103,6 @@ class ReplayedLoop final : public LoopRunner {
     return LoopState::isTrue({condition_.get(), Index::origin(1), condition_->shape});
   }
 
-  bool mayReplay() const {
-    return !device_.trace && !device_.context().labels().isOn() && spoiled_ < mostSpoiled;
-  }
-
   static Places placesOf(const LoopState& loop) {
     Places places;
     for (const LoopState::Used& used : loop.used()) {
@@ -130,10 +127,10 @@ class ReplayedLoop final : public LoopRunner {
   void step(LoopState& loop) {
     if (!mayReplay()) {
       drop();
-      return loop.runOnce();
+      return once_(loop);
     }
     if (isClosed_ || isStale() || (!cycle_.empty() && !areAt(loop, last_))) drop();
-    if (!std::exchange(hasRun_, true)) return loop.runOnce();
+    if (!std::exchange(hasRun_, true)) return once_(loop);
     Iteration& iteration = cycle_.emplace_back();
     device_.bound().keep(iteration.log);
     try {
@@ -165,7 +162,7 @@ class ReplayedLoop final : public LoopRunner {
       count(iteration.passes);
     };
     try {
-      loop.runOnce();
+      once_(loop);
     } catch (...) {
       end();
       throw;
@@ -380,6 +377,7 @@ class ReplayedLoop final : public LoopRunner {
   }
 
   GlDevice& device_;
+  const std::function<void(LoopState&)> once_;
   std::deque<Iteration> cycle_;
   Places last_;  ///< after the last iteration of cycle_
   bool isClosed_ = false;  ///< last_ is before cycle_.front()
@@ -397,6 +395,8 @@ class ReplayedLoop final : public LoopRunner {
 
 }  // namespace
 
-std::unique_ptr<LoopRunner> GlDevice::makeLoopRunner() { return std::make_unique<ReplayedLoop>(*this); }
+std::unique_ptr<Replay> makeReplay(GlDevice& device, std::function<void(LoopState&)> once) {
+  return std::make_unique<NotedReplay>(device, std::move(once));
+}
 
 }  // namespace sk
