@@ -272,6 +272,16 @@ void useAll(Device& device) {
 
 }  // namespace
 
+namespace {
+
+/// Contexts with compute programs, and profiles that use them.
+const std::vector<std::pair<Application::Kind, std::string>> dispatching{
+    {Application::Kind::Compute, "glsl330"},
+    {Application::Kind::Compute, "glsl430"},
+    {Application::Kind::Es, "essl310"}};
+
+}  // namespace
+
 TEST_CASE("a device on the application's context works in any state and puts it back") {
   const auto kind =
       GENERATE(Application::Kind::Core, Application::Kind::Compatibility, Application::Kind::Es);
@@ -294,7 +304,8 @@ TEST_CASE("a device on the application's context works in any state and puts it 
 }
 
 TEST_CASE("the buffers of the application's programs are theirs again after a reduction") {
-  Application application(Application::Kind::Compute);
+  const auto& [kind, profile] = GENERATE(from_range(dispatching));
+  Application application(kind);
   GLuint buffers[2] = {};
   glGenBuffers(2, buffers);
   for (const GLuint buffer : buffers) {
@@ -309,7 +320,7 @@ TEST_CASE("the buffers of the application's programs are theirs again after a re
   }
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers[1]);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[1]);
-  Device device = Device::adopt({.profile = GENERATE("glsl430", "glsl330")});
+  Device device = Device::adopt({.profile = profile});
   auto ones = device.stream<float>({100, 7});
   ones.write(std::vector<float>(700, 1.0f));
   CHECK(sumOfFloats().value<float>(ones) == 700);
@@ -338,7 +349,8 @@ TEST_CASE("a loop on the application's context ends by itself and puts the state
                                {input<float>("x"), output<float>("r")});
   static const TestKernel isLarge("isLarge", "void isLarge(float x, out bool r) { r = x > 900.0; }\n",
                                   {input<float>("x"), output<bool>("r")});
-  Application application(Application::Kind::Compute);
+  const auto& [kind, profile] = GENERATE(from_range(dispatching));
+  Application application(kind);
   makeHostileState(application);
   constexpr std::pair<GLenum, GLenum> bindings[] = {
       {GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING},
@@ -351,7 +363,7 @@ TEST_CASE("a loop on the application's context ends by itself and puts the state
   for (std::size_t i = 0; i < std::size(bindings); ++i) glBindBuffer(bindings[i].first, buffers[i]);
   const auto before = readState(application);
   {
-    Device device = Device::adopt({.profile = GENERATE("glsl330", "glsl430")});
+    Device device = Device::adopt({.profile = profile});
     auto x = device.stream<float>(1);
     auto done = device.stream<bool>(1);
     Loop loop = device.record([&] {

@@ -60,6 +60,9 @@ inline bool takesAllCases(const sk::Device& one) {
   return &one == &device("native") || &one == &device("glsl330");
 }
 
+/// True for devices with OpenGL ES, which has no doubles of its own.
+inline bool isEs(const sk::Device& one) { return one.profile().starts_with("essl"); }
+
 namespace detail {
 
 /// Calls call(test, device) on the chosen layouts and natively, with their names in messages.

@@ -3,20 +3,17 @@
 // Promises: glslang accepts every kind of program: profiles x domains x addressing x boundaries x ranks x
 // types, and every pass of a reduction. The programs stay in SK_TEST_FOLDER for inspection.
 #include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/scatter_programs.hpp"
 #include "assemble/program/sample_kernels.hpp"
 #include "assemble/program/several_bodies.hpp"
+#include "assemble/program/shown_programs.hpp"
 #include "assemble/program/tile_program.hpp"
 #include "assemble/reduce/group_fold.hpp"
 #include "assemble/reduce/reduce_program.hpp"
@@ -27,67 +24,6 @@ using namespace sk::assemble;
 using namespace sk::program;
 
 namespace {
-
-/// All but those of browsers, whose programs have the same text as for ES and are shown to Chromium (tests/web).
-std::vector<Profile> shownProfiles() {
-  std::vector<Profile> shown(profiles().begin(), profiles().end());
-  std::erase_if(shown, [](const Profile& profile) { return profile.webgl; });
-  return shown;
-}
-
-/// A folder of programs that one process checks.
-class Programs {
- public:
-  explicit Programs(std::string_view name) : folder_(std::filesystem::path(SK_TEST_FOLDER) / name) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-
-  void add(std::string_view text, std::string_view stage = "frag") {
-    std::ofstream(folder_ / fmt::format("{:04}.{}", count_++, stage)) << text;
-  }
-
-  /// glslang does not know the formats that GL_NV_image_formats adds.
-  void add(const Profile& profile, std::string_view text) {
-    if (text.find("GL_NV_image_formats") != std::string_view::npos) {
-      ++count_;
-      ++unknown_;
-      return;
-    }
-    add(text, profile.stage == Stage::Compute ? "comp" : "frag");
-  }
-
-  /// The errors that glslang reports.
-  std::string complaints() const {
-    const std::string command =
-        fmt::format("cd '{}' && '{}' *.* > complaints.txt 2>&1", folder_.string(), SK_GLSLANG_VALIDATOR);
-    const bool accepted = std::system(command.c_str()) == 0;
-    std::ifstream file(folder_ / "complaints.txt");
-    std::string line;
-    std::string result;
-    for (int shown = 0; shown < 20 && std::getline(file, line);) {
-      if (!line.starts_with("ERROR") && !line.starts_with("WARNING")) continue;
-      result += line + '\n';
-      ++shown;
-    }
-    return accepted && result.empty() ? "" : "glslang: " + result;
-  }
-
-  int count() const { return count_; }
-  int unknown() const { return unknown_; }
-
- private:
-  std::filesystem::path folder_;
-  int count_ = 0;
-  int unknown_ = 0;
-};
-
-void checkAccepted(const Programs& programs) {
-  const std::string complaints = programs.complaints();
-  INFO(complaints);
-  CHECK(complaints.empty());
-  CHECK(4 * programs.unknown() <= programs.count());
-}
 
 struct Type {
   const Element* element;
@@ -567,7 +503,6 @@ TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by 
 
 TEST_CASE("glslang accepts tiles of several iterations, with gathers of every kind") {
   Programs programs("tiles");
-  const Profile& profile = *findProfile("glsl430");
   for (const Element* const element : {&samples::floatElement, &samples::intElement}) {
     for (const Boundary boundary : boundaries) {
       const samples::EveryAccess every(*element, element == &samples::floatElement ? "1.0" : "-1", 2,
@@ -605,11 +540,14 @@ TEST_CASE("glslang accepts tiles of several iterations, with gathers of every ki
                          .usesExtent = true};
       for (const bool packed : {false, true}) {
         const StreamAccess access{.addressing = Addressing::Plane, .packed = packed};
-        programs.add(profile,
-                     tileProgram(profile, whole, {.domainPacked = true, .access = {access, {}, {}}}, plan));
+        for (const std::string_view name : {"glsl430", "essl310"}) {
+          const Profile& profile = *findProfile(name);
+          programs.add(profile,
+                       tileProgram(profile, whole, {.domainPacked = true, .access = {access, {}, {}}}, plan));
+        }
       }
     }
   }
-  CHECK(programs.count() == 16);
+  CHECK(programs.count() == 32);
   checkAccepted(programs);
 }

@@ -275,7 +275,7 @@ std::string TiledIteration::analyse(LoopState& loop) {
   }
   std::size_t changed = 0;
   for (std::size_t c = 0; c < carried_.size(); ++c) changed += plan_.next[c] != static_cast<int>(c) ? 1U : 0U;
-  if (carried_.size() > limit(device_.limits.textureUnits) || changed > limit(device_.limits.drawBuffers))
+  if (carried_.size() > limit(device_.limits.textureUnits) || changed > limit(device_.limits.images))
     return "a pass would read or write too many streams";
   if (components > limit(device_.limits.uniformComponents)) return "a pass would have too many uniforms";
   std::uint32_t weight = 0;
