@@ -35,7 +35,7 @@ bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-constexpr Layout glLayouts[] = {{"glsl330", 0}, {"glsl430", 0}, {"glsl330", smallLimits[1]}};
+constexpr Layout glLayouts[] = {{"glsl330", 0}, {"glsl430", 0}, {"essl300", 0}, {"glsl330", smallLimits[1]}};
 
 struct Fields {
   std::array<Field, 4> of;
