@@ -100,16 +100,45 @@ std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kerne
 
 /// Keeps only the kernels that --kernel names, with or without their namespaces.
 bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& messages) {
-  std::string known;
-  for (const ir::Kernel& kernel : module.kernels)
-    known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
-  const auto isWanted = [&](const ir::Kernel& kernel) {
+  std::vector<std::string> names;
+  const auto addName = [&](const ir::Kernel& kernel) {
+    if (std::ranges::find(names, qualifiedName(kernel)) == names.end())
+      names.push_back(qualifiedName(kernel));
+  };
+  for (const ir::Kernel& kernel : module.kernels) {
+    if (!kernel.isOfPipeline) addName(kernel);
+  }
+  for (const ir::Pipeline& pipeline : module.pipelines) addName(pipeline.face);
+  const std::string known = fmt::format("{}", fmt::join(names, ", "));
+  const auto isNamed = [&](const ir::Kernel& kernel) {
     return kernel.name == wanted || qualifiedName(kernel) == wanted;
   };
+  std::set<const ir::Kernel*> wantedKernels;
+  for (const ir::Kernel& kernel : module.kernels) {
+    if (isNamed(kernel)) wantedKernels.insert(&kernel);
+  }
+  std::erase_if(module.pipelines, [&](const ir::Pipeline& pipeline) { return !isNamed(pipeline.face); });
+  for (const ir::Pipeline& pipeline : module.pipelines) {
+    for (const ir::PipelinePass& pass : pipeline.passes) {
+      const ir::Kernel& kernel = module.kernels[pass.kernel];
+      wantedKernels.insert(&kernel);
+      if (kernel.reduction && kernel.reduction->combine)
+        wantedKernels.insert(&module.kernels[*kernel.reduction->combine]);
+      if (kernel.assertions) wantedKernels.insert(&module.kernels[kernel.assertions->check]);
+    }
+  }
+  const auto isWanted = [&](const ir::Kernel& kernel) { return wantedKernels.contains(&kernel); };
   std::vector<ir::KernelId> numbers;  // old ids of the kept kernels; combining overloads share the name
   ir::KernelId next = 0;
   for (const ir::Kernel& kernel : module.kernels) numbers.push_back(isWanted(kernel) ? next++ : next);
-  std::erase_if(module.kernels, [&](const ir::Kernel& kernel) { return !isWanted(kernel); });
+  std::vector<ir::Kernel> kept;
+  for (ir::Kernel& kernel : module.kernels) {
+    if (isWanted(kernel)) kept.push_back(std::move(kernel));
+  }
+  module.kernels = std::move(kept);
+  for (ir::Pipeline& pipeline : module.pipelines) {
+    for (ir::PipelinePass& pass : pipeline.passes) pass.kernel = numbers[pass.kernel];
+  }
   for (ir::Kernel& kernel : module.kernels) {
     if (kernel.reduction && kernel.reduction->combine) {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
@@ -258,6 +287,19 @@ void printPredicated(const Job& job, const ir::Module& module) {
   job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
 }
 
+/// Reports the first pipeline that a module for browsers cannot have, since there only single kernels run.
+void reportPipelines(const Options& options, const ir::Module& module, Diagnostics& diagnostics) {
+  if (options.emit != Emit::Js) return;
+  for (const ir::Pipeline& pipeline : module.pipelines) {
+    if (pipeline.isKernel) continue;
+    std::string calls;
+    for (const ir::PipelinePass& pass : pipeline.passes) {
+      for (const std::string& name : pass.calls) calls += (calls.empty() ? "'" : "', '") + name;
+    }
+    return diagnostics.report(Diag::PipelineInBrowser, pipeline.face.loc, {pipeline.face.name, calls + "'"});
+  }
+}
+
 /// Warns of the first printf, and of the first assertion, that some of the programs leave out.
 void reportLeftOut(const Options& options, const ir::Module& module, Diagnostics& diagnostics) {
   if (options.emit == Emit::Js && !module.assertions.empty())
@@ -295,6 +337,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
   }
+  if (!frontend.diagnostics().hasErrors()) reportPipelines(options, *module, frontend.diagnostics());
   if (!frontend.diagnostics().hasErrors()) reportLeftOut(options, *module, frontend.diagnostics());
   if (!frontend.diagnostics().hasErrors()) emit::reportOverloads(*module, frontend.diagnostics());
   if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());

@@ -31,6 +31,36 @@ namespace {
 
 using sk::assemble::Profile;
 
+/// The profile of the fragment programs that take the place of compute programs of ES, which write fewer images, of fewer formats.
+Profile drawnProfile(const Profile& profile) {
+  Profile drawn = *sk::assemble::findProfile("essl300");
+  drawn.doubles = profile.doubles;
+  drawn.barrier = profile.barrier;
+  drawn.asWritten = profile.asWritten;
+  return drawn;
+}
+
+/// Whether the profile's programs write all outputs and accumulators of a kernel, each element in a texel of its own.
+bool mayStore(const Profile& profile, const sk::program::Kernel& kernel) {
+  using sk::program::Role;
+  if (profile.stage == sk::assemble::Stage::Fragment) return true;
+  return std::ranges::all_of(kernel.parameters, [&](const sk::program::Parameter& parameter) {
+    const bool isWritten = parameter.role == Role::Output || parameter.role == Role::Accumulator ||
+                           sk::assemble::isAppendOutput(parameter);
+    return !isWritten || sk::assemble::mayStore(profile, heldBy(parameter));
+  });
+}
+
+/// Fragment programs in place of compute programs, which the comment in the second line then says. It adds no line, because programs
+/// number theirs.
+std::string asDrawn(const Profile& profile, std::string&& programs) {
+  const std::size_t version = programs.find('\n');
+  const std::size_t comment = version == std::string::npos ? version : programs.find('\n', version + 1);
+  if (comment != std::string::npos)
+    programs.insert(comment, fmt::format("; {} has no images for its outputs", profile.name));
+  return std::move(programs);
+}
+
 /// Access to an input whose texels do not correspond to the domain's.
 sk::assemble::StreamAccess foundByIndex(sk::assemble::Domain domain, bool isPacked) {
   using sk::assemble::Addressing;
@@ -112,9 +142,31 @@ std::string groupListing(const Profile& profile, const sk::program::Kernel& kern
   return skc::join(programs, "\n");
 }
 
+/// Whether compute programs have images for all that a kernel with append outputs writes: its outputs, the number of entries of each
+/// list, and the records of scatters that atomic operations do not combine.
+bool mayAppend(const Profile& profile, const sk::program::Kernel& kernel) {
+  using sk::program::Role;
+  const sk::Order order = kernel.options.order;
+  std::size_t images = 0;
+  bool hasRecords = false;
+  for (const sk::program::Parameter& parameter : kernel.parameters) {
+    const bool isListed = sk::assemble::isListed(parameter, order);
+    hasRecords = hasRecords || isListed;
+    if (parameter.role == Role::VariableOutput || isListed) ++images;
+    if (parameter.role == Role::Output || sk::assemble::isAppendOutput(parameter))
+      images += sk::assemble::imagesOf(parameter, order);
+  }
+  return mayStore(profile, kernel) && images <= static_cast<std::size_t>(profile.drawBuffers) &&
+         (!hasRecords || sk::assemble::mayStore(profile, "rg32ui"));
+}
+
 /// All programs of a kernel with append outputs: counting, the sums of counts, each list, and its points.
 std::string appendListing(const Profile& profile, const sk::program::Kernel& kernel) {
-  if (profile.stage == sk::assemble::Stage::Compute) return groupListing(profile, kernel);
+  if (profile.stage == sk::assemble::Stage::Compute) {
+    return !profile.es || mayAppend(profile, kernel)
+               ? groupListing(profile, kernel)
+               : asDrawn(profile, appendListing(drawnProfile(profile), kernel));
+  }
   sk::assemble::Variant variant = plainVariant(kernel);
   std::vector<std::string> programs;
   variant.task.work = sk::assemble::Work::Counts;
@@ -183,7 +235,7 @@ std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
     if (parameter.role == sk::program::Role::Accumulator) planes += parameter.element->fields.size();
   }
   const auto most = static_cast<std::size_t>(profile.drawBuffers);
-  if (planes <= most) return {whole};
+  if (planes <= most || whole.toBuffer) return {whole};
   std::vector<sk::assemble::ReduceVariant> parts;
   for (std::size_t first = 0; first < planes; first += most) {
     parts.push_back(whole);
@@ -265,6 +317,9 @@ bool has(const sk::program::Kernel& kernel, sk::program::Role role) {
 
 /// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
+  if (!mayStore(profile, reduction.fold)) {
+    return asDrawn(profile, formListing(drawnProfile(profile), reduction, isScan));
+  }
   if (isScan) return passListing(profile, reduction, passesOfScan(profile, reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
@@ -296,16 +351,21 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
 
 /// The programs of the passes that a kernel needs within the profile's limits.
 std::string kernelListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  const auto listed = [&](const sk::program::Kernel& one, const sk::assemble::Variant& variant) {
+    if (variant.domainPacked || mayStore(profile, one))
+      return sk::assemble::kernelProgram(profile, one, variant);
+    return asDrawn(profile, sk::assemble::kernelProgram(drawnProfile(profile), one, variant));
+  };
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
   const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);
   const sk::assemble::Variant whole = plainVariant(kernel);
   if (plan == nullptr || sk::assemble::fitsOnePass(kernel, limits, whole.specs)) {
-    return sk::assemble::kernelProgram(profile, kernel, whole);
+    return listed(kernel, whole);
   }
   std::string text;
   for (const sk::program::Pass& pass : plan->passes) {
     if (!text.empty()) text += "\n";
-    text += sk::assemble::kernelProgram(profile, pass.kernel, plainVariant(pass.kernel, false));
+    text += listed(pass.kernel, plainVariant(pass.kernel, false));
   }
   return text;
 }

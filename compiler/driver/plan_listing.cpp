@@ -46,10 +46,33 @@ class PlanPrinter {
       printReaches(kernel);
       for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
+    for (const Pipeline& pipeline : module_.pipelines) printPipeline(pipeline);
     return std::move(text_);
   }
 
  private:
+  void printPipeline(const Pipeline& pipeline) {
+    text_ += fmt::format("\npipeline {}{}: {}", qualifier(pipeline.face.scope), pipeline.face.name,
+                         counted(pipeline.passes.size(), "kernel"));
+    if (pipeline.bytesOfPasses < pipeline.bytesOfCalls) {
+      text_ += fmt::format(", {} bytes of memory an element instead of {} call by call",
+                           pipeline.bytesOfPasses, pipeline.bytesOfCalls);
+    }
+    text_ += "\n";
+    for (const PipelinePass& pass : pipeline.passes) {
+      std::vector<std::string> written;
+      for (std::size_t i = 0; i < pass.operands.size(); ++i) {
+        if (pass.operands[i].isTemporary && module_.kernels[pass.kernel].params[i].role == ParamRole::Output)
+          written.push_back(pipeline.locals[pass.operands[i].index].name);
+      }
+      text_ +=
+          wrapLine(fmt::format("  {}: {}{}", module_.kernels[pass.kernel].name, join(pass.calls, ", then "),
+                               written.empty() ? "" : fmt::format("; stores {}", join(written, ", "))),
+                   100, 4) +
+          "\n";
+    }
+  }
+
   bool isCheck(const Kernel& part) const {
     return std::ranges::any_of(module_.kernels, [&](const Kernel& kernel) {
       return kernel.assertions && &module_.kernels[kernel.assertions->check] == &part;

@@ -203,6 +203,7 @@ std::string typeTraits() {
   return text;
 }
 
+// A pipeline passes its streams to gathers: to Clang, they are elements.
 constexpr std::string_view gathersAndStreams = R"(
 template <class T> struct __sk_element { using type = T; };
 template <class T, unsigned long n> struct __sk_element<T[n]> { using type = const T (&)[n]; };
@@ -213,20 +214,24 @@ template <class T> using gather_2d = stream_gather<T, 2>;
 template <class T> using gather_3d = stream_gather<T, 3>;
 template <class T> using gather_4d = stream_gather<T, 4>;
 template <class T> struct stream_gather<T, 1> {
+  stream_gather() = default; template <class U> requires (__is_same(U, T)) stream_gather(const U&);
   __sk_read<T> operator[](int) const; __sk_read<T> operator[](uint) const; __sk_read<T> operator[](float) const;
   __sk_read<T> operator[](long) const; __sk_read<T> operator[](ulong) const;
 };
 template <class T> struct stream_gather<T, 2> {
+  stream_gather() = default; template <class U> requires (__is_same(U, T)) stream_gather(const U&);
   gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
   gather_1d<T> operator[](long) const; gather_1d<T> operator[](ulong) const;
   gather_1d<T> operator[](float) const; __sk_read<T> operator[](int2) const; __sk_read<T> operator[](float2) const;
 };
 template <class T> struct stream_gather<T, 3> {
+  stream_gather() = default; template <class U> requires (__is_same(U, T)) stream_gather(const U&);
   gather_2d<T> operator[](int) const; gather_2d<T> operator[](uint) const;
   gather_2d<T> operator[](long) const; gather_2d<T> operator[](ulong) const;
   gather_2d<T> operator[](float) const; __sk_read<T> operator[](int3) const; __sk_read<T> operator[](float3) const;
 };
 template <class T> struct stream_gather<T, 4> {
+  stream_gather() = default; template <class U> requires (__is_same(U, T)) stream_gather(const U&);
   gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
   gather_3d<T> operator[](long) const; gather_3d<T> operator[](ulong) const;
   gather_3d<T> operator[](float) const; __sk_read<T> operator[](int4) const; __sk_read<T> operator[](float4) const;
@@ -283,7 +288,9 @@ template <class T> struct scatter_4d {
   scatter_3d<T> operator[](long) const; scatter_3d<T> operator[](ulong) const;
   scatter_3d<T> operator[](float) const; T& operator[](int4) const; T& operator[](float4) const;
 };
-template <class T> struct variable_output { void operator=(const T&) = delete("variable_output"); };
+template <class T> struct variable_output {
+  variable_output() = default; template <class U> requires (__is_same(U, T)) variable_output(const U&);
+  void operator=(const T&) = delete("variable_output"); };
 template <class T> struct __sk_same { using type = T; };
 template <class T> void push(variable_output<T> r, typename __sk_same<T>::type value);
 void printf(const char*, ...) __attribute__((format(printf, 1, 2)));

@@ -387,6 +387,7 @@ Kernel clone(const Kernel& kernel) {
               .isNativeOnly = kernel.isNativeOnly,
               .parts = kernel.parts,
               .isPart = kernel.isPart,
+              .isOfPipeline = kernel.isOfPipeline,
               .assertions = kernel.assertions,
               .plans = kernel.plans,
               .pass = kernel.pass,
@@ -416,10 +417,15 @@ Module clone(const Module& module) {
               .kernels = {},
               .streams = module.streams,
               .assertions = module.assertions,
-              .bundleTypes = module.bundleTypes};
+              .bundleTypes = module.bundleTypes,
+              .pipelines = {}};
   for (const Constant& constant : module.constants) copy.constants.push_back(clone(constant));
   for (const Function& function : module.functions) copy.functions.push_back(ir::clone(function));
   for (const Kernel& kernel : module.kernels) copy.kernels.push_back(clone(kernel));
+  for (const Pipeline& pipeline : module.pipelines) {
+    copy.pipelines.push_back({clone(pipeline.face), pipeline.locals, pipeline.passes, pipeline.isKernel,
+                              pipeline.bytesOfCalls, pipeline.bytesOfPasses});
+  }
   return copy;
 }
 
@@ -448,6 +454,19 @@ std::uint64_t scalarCount(const Module& module, Type type) {
     }
   }
   return 0;
+}
+
+std::uint64_t memoryBytes(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Struct) {
+    std::uint64_t sum = 0;
+    for (const StructField& field : module.structs[type.index].fields) sum += memoryBytes(module, field.type);
+    return sum;
+  }
+  if (type.kind == Type::Kind::Array) {
+    const Array& array = module.arrays[type.index];
+    return array.length * memoryBytes(module, array.element);
+  }
+  return scalarCount(module, type) * std::max<unsigned>(row(type.scalar).bits, 8) / 8;
 }
 
 std::size_t scalarOffset(const Module& module, Type structType, std::uint32_t field) {

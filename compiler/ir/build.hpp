@@ -128,6 +128,8 @@ Type arrayOf(Module& module, Type element, std::uint32_t length);
 bool holds(const Module& module, Type type, Scalar scalar);
 /// The number of scalars that a value of the type holds: nested arrays multiply.
 std::uint64_t scalarCount(const Module& module, Type type);
+/// Bytes of the scalars of a value in memory.
+std::uint64_t memoryBytes(const Module& module, Type type);
 /// The number of scalars before a field of a struct.
 std::size_t scalarOffset(const Module& module, Type structType, std::uint32_t field);
 

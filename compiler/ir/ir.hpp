@@ -535,6 +535,7 @@ struct Kernel {
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::optional<FoldParts> parts;  ///< of a kernel with outputs and accumulators
   bool isPart = false;  ///< of the FoldParts or AssertionCheck of another kernel: C++ cannot call it
+  bool isOfPipeline = false;  ///< a pass of a pipeline, which alone calls it
   std::optional<AssertionCheck> assertions = {};  ///< of a declared kernel
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
@@ -559,6 +560,32 @@ inline std::string_view wordOf(const Kernel& kernel) {
 
 /// The word that declares its accumulators.
 inline std::string_view accumulatorWordOf(const Kernel& kernel) { return kernel.isScan ? "scan" : "reduce"; }
+
+/// A stream that only exists while a pipeline runs. It has the shape of the pipeline's domain.
+struct LocalStream {
+  std::string name;
+  Type type;  ///< element type
+};
+
+/// A kernel of a pipeline, and its arguments: those of the pipeline, or local streams.
+struct PipelinePass {
+  KernelId kernel;
+  std::vector<PassOperand> operands;  ///< one per parameter of the kernel
+  std::vector<std::string> calls;  ///< the names of the kernels that it calls, in order
+  bool isOverDomain = true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
+};
+
+/// A function over streams: kernels, called in order. Calls that follow each other element by element are one pass.
+struct Pipeline {
+  Kernel face;  ///< what C++ calls: name, parameters, bundles and choices. It has no function, and is not in the module's table
+  std::vector<LocalStream> locals;  ///< those that one pass writes and a later one reads
+  std::vector<PipelinePass> passes;  ///< at least one
+  /// The pipeline is a kernel of the module: its only pass, which has its name and parameters.
+  bool isKernel = false;
+  /// Bytes that an element's values take in memory, counted once for each pass that reads or writes them: if each
+  /// call were a pass, and as it is.
+  std::uint64_t bytesOfCalls = 0, bytesOfPasses = 0;
+};
 
 /// An extent of a declared stream: a constant, or, if it has a name, an argument of the struct that the stub
 /// declares for the streams of a namespace.
@@ -588,6 +615,7 @@ struct Module {
   std::vector<DeclaredStream> streams;
   std::vector<Assertion> assertions = {};
   std::vector<BundleType> bundleTypes;  ///< an inner one before those that have it as a member
+  std::vector<Pipeline> pipelines = {};
 };
 
 }  // namespace skc::ir

@@ -192,7 +192,7 @@ struct Visitor {
 
   void visit(Kernel& kernel) {
     auto& [name, scope, signature, entry, params, bundles, reduction, isScan, isSynthesized, isNativeOnly,
-           parts, isPart, assertions, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
+           parts, isPart, isOfPipeline, assertions, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
     for (KernelParam& param : params) visit(param);
     for (Plan& plan : plans) visit(plan);
   }
@@ -210,14 +210,24 @@ struct Visitor {
     }
   }
 
+  void visit(Pipeline& pipeline) {
+    auto& [face, locals, passes, isKernel, bytesOfCalls, bytesOfPasses] = pipeline;
+    visit(face);
+    for (LocalStream& local : locals) {
+      auto& [name, type] = local;
+      onType(type);
+    }
+  }
+
   void visit(Module& module) {
     auto& [file, sources, structs, arrays, constants, functions, tables, kernels, streams, assertions,
-           bundleTypes] = module;
+           bundleTypes, pipelines] = module;
     for (Constant& constant : constants) visit(constant);
     for (Function& function : functions) visit(function);
     for (Kernel& kernel : kernels) visit(kernel);
     for (DeclaredStream& stream : streams) visit(stream);
     for (BundleType& bundle : bundleTypes) visit(bundle);
+    for (Pipeline& pipeline : pipelines) visit(pipeline);
   }
 };
 

@@ -195,11 +195,16 @@ class EntryWriter {
         for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) arguments[row].push_back(argument(i));
         addMask(arguments[row], element, count);
       }
+      const std::vector<std::uint32_t> outputs = paramsOf(ParamRole::Output);
+      // the loops of several rows take long enough for the outputs to arrive, so that no store waits for memory
+      for (std::uint32_t row = 0; rows > 1 && row < rows; ++row) {
+        streams_.selectRow(row);
+        for (const std::uint32_t output : outputs) streams_.prefetchOutput(output);
+      }
       streams_.selectRow(0);
       const std::vector<CallResult> called =
           rows > 1 ? inlineRows(context_, *s_.rowPlan, arguments)
                    : std::vector{inlineCall(context_, s_.kernel.entry, arguments.front())};
-      const std::vector<std::uint32_t> outputs = paramsOf(ParamRole::Output);
       for (std::uint32_t row = 0; row < rows; ++row) {
         streams_.selectRow(row);
         for (std::size_t i = 0; i < outputs.size(); ++i)

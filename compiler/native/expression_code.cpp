@@ -388,7 +388,9 @@ Parts FunctionCode::parts(const Expr&, const IntrinsicCall& n) {
 
 // ---- streams --------------------------------------------------------------------------------------
 
-Parts FunctionCode::parts(const Expr&, const GatherRead& n) {
+Parts FunctionCode::parts(const Expr& expr, const GatherRead& n) {
+  if (const auto walk = walks_.find(&expr); walk != walks_.end())
+    return k.streams.elementOf(walk->second.size() == 1 ? walk->second[0] : walk->second[row_], iteration_);
   return k.streams.gather(n.stream.id, expression(*n.index));
 }
 Parts FunctionCode::parts(const Expr&, const NeighborRead& n) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "native/function_code.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <llvm/IR/Constants.h>
+#include <llvm/IR/MDBuilder.h>
 
 #include "ir/build.hpp"
 #include "native/arithmetic.hpp"
@@ -181,6 +185,7 @@ void FunctionCode::write(const Loop& n) {
   llvm::BasicBlock* const test = newBlock("loop");
   llvm::BasicBlock* const body = newBlock("body");
   llvm::BasicBlock* const end = newBlock("endloop");
+  writeUnchecked(n, end);
   branch(n.kind == LoopKind::DoWhile ? body : test);
   b.SetInsertPoint(test);
   if (n.cond) {
@@ -245,6 +250,71 @@ void FunctionCode::writeIterations(const Loop& n, const std::vector<BlockGather>
   number->addIncoming(following, b.GetInsertBlock());
   b.CreateCondBr(goesOn, body, end);
   b.SetInsertPoint(done);
+}
+
+/// If all rows run through a loop together, and the indices of gathers can be tested before it, emits code that does so and
+/// the loop without tests. Afterwards, the insertion point is where some index is out of bounds.
+void FunctionCode::writeUnchecked(const Loop& n, llvm::BasicBlock* end) {
+  if (plan_ == nullptr || !isInAllRows_) return;
+  UncheckedLoop loop = uncheckedGathers(k.module, *k.uniformity, id_, n);
+  if (loop.gathers.empty()) return;
+  const auto isSigned = loop.counter->type.scalar == Scalar::Int;
+  const auto wide = [&](const Expr& expr) {
+    llvm::Value* const value = expression(expr)[0].value;
+    return isSigned ? b.CreateSExt(value, l.int64()) : b.CreateZExt(value, l.int64());
+  };
+  llvm::Value* iterations = b.CreateSub(wide(*loop.limit), wide(*loop.counter));
+  if (loop.includesLimit) iterations = b.CreateAdd(iterations, l.integer(l.int64(), 1));
+  llvm::Value* areInside = b.CreateICmpSGT(iterations, l.integer(l.int64(), 0));
+  std::vector<std::vector<Parts>> indices;
+  std::erase_if(loop.gathers, [&](const UncheckedGather& gather) {
+    std::vector<Parts> ofRows;
+    for (std::size_t row = 0; row < (plan_->isShared(*gather.read) ? 1 : variables_.size()); ++row) {
+      selectRow(row);
+      ofRows.push_back(expression(*gather.index));
+      const Parts& index = ofRows.back();
+      if (l.isVarying(index[0]) ||
+          !std::all_of(index.begin() + 1, index.end(), [&](const Part& part) { return l.isUniform(part); }))
+        return true;
+      areInside =
+          b.CreateAnd(areInside, k.streams.isWalkInside(gather.stream(), index, gather.grows, iterations));
+    }
+    indices.push_back(std::move(ofRows));
+    return false;
+  });
+  selectRow(0);
+  if (loop.gathers.empty()) return;
+  llvm::BasicBlock* const inside = newBlock("unchecked");
+  llvm::BasicBlock* const outside = newBlock("checked");
+  // so that values of the loop without tests stay in registers
+  b.CreateCondBr(areInside, inside, outside,
+                 llvm::MDBuilder(b.getContext()).createLikelyBranchWeights());
+  b.SetInsertPoint(inside);
+  writeWalks(n, loop, indices, iterations, end);
+  b.SetInsertPoint(outside);
+}
+
+/// Emits a loop of at least one iteration, which reads gathers without tests.
+void FunctionCode::writeWalks(const Loop& n, const UncheckedLoop& loop,
+                              const std::vector<std::vector<Parts>>& indices, llvm::Value* iterations,
+                              llvm::BasicBlock* end) {
+  for (std::size_t g = 0; g < loop.gathers.size(); ++g) {
+    const UncheckedGather& gather = loop.gathers[g];
+    for (const Parts& index : indices[g])
+      walks_[gather.read].push_back(k.streams.walk(gather.stream(), index, gather.grows));
+  }
+  llvm::BasicBlock* const before = b.GetInsertBlock();
+  llvm::BasicBlock* const body = newBlock("body");
+  branch(body);
+  b.SetInsertPoint(body);
+  llvm::PHINode* const number = b.CreatePHI(l.int64(), 2);
+  number->addIncoming(l.integer(l.int64(), 0), before);
+  iteration_ = number;
+  iteration(n, end);
+  walks_.clear();
+  llvm::Value* const next = b.CreateAdd(number, l.integer(l.int64(), 1));
+  number->addIncoming(next, b.GetInsertBlock());
+  b.CreateCondBr(b.CreateICmpEQ(next, iterations), end, body);
 }
 
 void FunctionCode::write(const Switch& n) {

@@ -18,6 +18,7 @@
 #include "native/leaves.hpp"
 #include "native/row_plan.hpp"
 #include "native/streams.hpp"
+#include "native/unchecked_gathers.hpp"
 
 namespace skc::native {
 
@@ -113,6 +114,10 @@ class FunctionCode {
   void writeBlocks(const ir::Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end);
   void writeIterations(const ir::Loop& n, const std::vector<BlockGather>& gathers,
                        const std::vector<Streams::Block>& blocks, llvm::BasicBlock* end);
+  void writeUnchecked(const ir::Loop& n, llvm::BasicBlock* end);
+  void writeWalks(const ir::Loop& n, const UncheckedLoop& loop,
+                  const std::vector<std::vector<Parts>>& indices, llvm::Value* iterations,
+                  llvm::BasicBlock* end);
   void write(const ir::Switch& n);
   void write(const ir::Break& n);
   void write(const ir::Continue& n);
@@ -172,6 +177,9 @@ class FunctionCode {
   std::optional<std::map<const ir::Expr*, Parts>> shared_;
   /// The values of gathers in the current iteration of a block (block_gathers.hpp).
   std::map<const ir::Expr*, Parts> fromBlocks_;
+  /// The gathers that the current loop reads without tests, in each row or, if rows share them, in the first.
+  std::map<const ir::Expr*, std::vector<Streams::Walk>> walks_;
+  llvm::Value* iteration_ = nullptr;  ///< of that loop
   /// By row and variable. Rows after the first have only the variables that differ between rows.
   std::vector<std::vector<std::vector<LeafMemory>>> variables_;
   std::vector<LeafMemory> result_;

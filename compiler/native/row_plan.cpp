@@ -111,11 +111,12 @@ std::uint32_t RowPlan::carried() const {
       forEachSet(module_, stmt, [&](VarId var) { assigned.insert(var); });
     });
   });
-  std::uint32_t scalars = 0;
+  std::uint32_t words = 0;
   for (const VarId var : assigned) {
-    if (isPerRow(var) && !inner.contains(var)) scalars += componentCount(module_, entry_.variables[var].type);
+    if (!isPerRow(var) || inner.contains(var)) continue;
+    for (const Scalar scalar : scalarsOf(module_, entry_.variables[var].type)) words += is64Bit(scalar) ? 2 : 1;
   }
-  return scalars;
+  return words;
 }
 
 RowBlock blockFor(const CpuLevel& level, std::uint32_t carried) {

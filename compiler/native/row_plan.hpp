@@ -27,7 +27,7 @@ class RowPlan {
   /// The gathers of which a loop that all rows run through together reads vectors that they share. Computing
   /// rows together saves loads if there is one.
   std::set<std::uint32_t> sharedGathers(const analysis::Uniformity& lanes) const;
-  /// The number of scalars that each row carries from one iteration of such loops to the next.
+  /// The number of words of 32 bits that each row carries from one iteration of such loops to the next.
   std::uint32_t carried() const;
 
   /// True if a variable of the entry has its own value in each row.
@@ -53,7 +53,7 @@ struct RowBlock {
   std::uint32_t lanes, rows;
 };
 
-/// The block whose `carried` scalars, in all lanes and rows, fill the registers of the CPU.
+/// The block whose `carried` words, in all lanes and rows, fill the registers of the CPU.
 RowBlock blockFor(const CpuLevel& level, std::uint32_t carried);
 
 }  // namespace skc::native

@@ -136,6 +136,21 @@ void Streams::storeOutput(std::uint32_t param, const Parts& value) {
   }
 }
 
+void Streams::prefetchOutput(std::uint32_t param) {
+  constexpr std::uint32_t line = 64;
+  const SlotPlan::Location location = *slots_.find(param, {});
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    llvm::Value* const first = l.at(l.stored(scalar), array(location.firstArray + c), element_);
+    for (std::uint32_t byte = 0; byte < l.count() * l.storedBytes(scalar); byte += line) {
+      llvm::Value* const address = l.b.CreateConstGEP1_64(l.b.getInt8Ty(), first, byte);
+      // to write, into all levels of caches, data
+      l.b.CreateIntrinsic(llvm::Intrinsic::prefetch, {l.b.getPtrTy()},
+                          {address, l.b.getInt32(1), l.b.getInt32(3), l.b.getInt32(1)});
+    }
+  }
+}
+
 Parts Streams::index(const StreamRef& stream) {
   const bool isInput =
       stream.space == StreamRef::Space::KernelParameter && kernel_.params[stream.id].role == ParamRole::Input;

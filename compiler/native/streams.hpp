@@ -44,6 +44,8 @@ class Streams {
   Parts input(std::uint32_t param);
   Parts iterator(std::uint32_t param);
   void storeOutput(std::uint32_t param, const Parts& value);
+  /// Fetches the memory that storeOutput() will write into the nearest cache.
+  void prefetchOutput(std::uint32_t param);
 
   Parts index(const ir::StreamRef& stream);
   Parts extent(const ir::StreamRef& stream);
@@ -61,6 +63,19 @@ class Streams {
   /// `counter` is a uniform summand of the index.
   Block readBlock(std::uint32_t param, const Parts& index, llvm::Value* counter);
   Parts elementOf(const Block& block, llvm::Value* number);
+  /// The elements of a gather that a loop reads one after the other (unchecked_gathers.hpp).
+  struct Walk {
+    std::uint32_t param;
+    std::vector<llvm::Value*> components;  ///< addresses of the first iteration's element
+    llvm::Value* step;  ///< in elements, from one iteration to the next
+    bool isConsecutive;  ///< lanes read neighbours along x; else all read the same element
+  };
+  /// True if no iteration reads out of bounds, in any lane. `index` is that of the first iteration: x is uniform or
+  /// consecutive, the others are uniform, and those of which `grows` is true grow by one.
+  llvm::Value* isWalkInside(std::uint32_t param, const Parts& index, const std::vector<bool>& grows,
+                            llvm::Value* iterations);
+  Walk walk(std::uint32_t param, const Parts& index, const std::vector<bool>& grows);
+  Parts elementOf(const Walk& walk, llvm::Value* iteration);
   /// `constant` is the offset, if it is known.
   Parts neighbor(std::uint32_t param, const Parts& offset,
                  const std::optional<std::vector<std::int32_t>>& constant);

@@ -92,25 +92,42 @@ std::vector<Callable> callables(const Module& module) {
   std::vector<Callable> list;
   std::vector<const Kernel*> kernels;  // the first of each callable
   std::map<std::pair<std::vector<std::string>, std::string>, std::size_t> known;
+  const auto callableOf = [&](const Kernel& kernel) -> Callable& {
+    const auto [callable, isNew] = known.try_emplace({kernel.scope, kernel.name}, list.size());
+    if (isNew) {
+      kernels.push_back(&kernel);
+      list.push_back({kernel.scope, {}, {}, {}});
+    }
+    return list[callable->second];
+  };
   std::size_t unit = 0;
   for (const Kernel& kernel : module.kernels) {
     if (!isUnit(kernel)) continue;
-    const auto [callable, isNew] = known.try_emplace({kernel.scope, kernel.name}, list.size());
-    if (!isNew) {
-      list[callable->second].units.push_back(unit++);
-      continue;
-    }
-    kernels.push_back(&kernel);
-    list.push_back({kernel.scope, {}, {}, {unit++}});
+    if (!kernel.isOfPipeline) callableOf(kernel).units.push_back(unit);
+    ++unit;
+  }
+  for (std::size_t i = 0; i < module.pipelines.size(); ++i) {
+    if (!module.pipelines[i].isKernel) callableOf(module.pipelines[i].face).pipelines.push_back(i);
   }
   Scopes scopes(module);
   for (std::size_t i = 0; i < list.size(); ++i)
     list[i].object = scopes.namesOf(list[i].scope).take(kernels[i]->name);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string type = pascalCase(kernels[i]->name) + pascalCase(wordOf(*kernels[i]));
+    const std::string_view word = list[i].units.empty() ? "pipeline" : wordOf(*kernels[i]);
+    const std::string type = pascalCase(kernels[i]->name) + pascalCase(word);
     list[i].type = scopes.namesOf(list[i].scope).take(type);
   }
   return list;
+}
+
+std::vector<const Kernel*> overloadsOf(const Module& module, const Callable& callable) {
+  std::vector<const Kernel*> units, overloads;
+  for (const Kernel& kernel : module.kernels) {
+    if (isUnit(kernel)) units.push_back(&kernel);
+  }
+  for (const std::size_t unit : callable.units) overloads.push_back(units[unit]);
+  for (const std::size_t pipeline : callable.pipelines) overloads.push_back(&module.pipelines[pipeline].face);
+  return overloads;
 }
 
 std::string cppType(const Module& module, Type type, const std::vector<std::string>& scope) {
@@ -188,15 +205,6 @@ void reportName(Diagnostics& diagnostics, Loc loc, std::string_view kind, const 
                       helps ? "in a namespace it would keep its name" : "another name would stay"});
 }
 
-/// The kernels that C++ programs call.
-std::vector<const Kernel*> unitsOf(const Module& module) {
-  std::vector<const Kernel*> units;
-  for (const Kernel& kernel : module.kernels) {
-    if (isUnit(kernel)) units.push_back(&kernel);
-  }
-  return units;
-}
-
 void reportAlike(const Module& module, const std::vector<const Kernel*>& overloads,
                  Diagnostics& diagnostics) {
   std::map<std::string, const Kernel*> taken;
@@ -241,21 +249,16 @@ void reportCppNames(const Module& module, Diagnostics& diagnostics) {
     for (const BundleMember& member : bundle.members) reportMacro(member.name, "member", bundle.loc);
   }
   for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);
-  const std::vector<const Kernel*> units = unitsOf(module);
   for (const Callable& callable : callables(module)) {
-    const Kernel& kernel = *units[callable.units.front()];
+    const Kernel& kernel = *overloadsOf(module, callable).front();
     for (const std::string& scope : kernel.scope) reportMacro(scope, "namespace", kernel.loc);
     reportName(diagnostics, kernel.loc, wordOf(kernel), kernel.name, callable.object, kernel.scope.empty());
   }
 }
 
 void reportOverloads(const Module& module, Diagnostics& diagnostics) {
-  const std::vector<const Kernel*> units = unitsOf(module);
-  for (const Callable& callable : callables(module)) {
-    std::vector<const Kernel*> overloads;
-    for (const std::size_t unit : callable.units) overloads.push_back(units[unit]);
-    reportAlike(module, overloads, diagnostics);
-  }
+  for (const Callable& callable : callables(module))
+    reportAlike(module, overloadsOf(module, callable), diagnostics);
 }
 
 namespace {

@@ -14,13 +14,17 @@
 
 namespace skc::emit {
 
-/// The kernels that one callable object stands for: the overloads of one name in one namespace.
+/// The kernels and pipelines that one callable object stands for: the overloads of one name in one namespace.
 struct Callable {
   std::vector<std::string> scope;
   std::string object;              ///< "diffuse"
   std::string type;                ///< "DiffuseKernel"
   std::vector<std::size_t> units;  ///< indices into Program::units(), whose kernels these are
+  std::vector<std::size_t> pipelines = {};  ///< indices into Module::pipelines, of those that are no kernels
 };
+
+/// Its overloads: the kernels of its units, and the faces of its pipelines.
+std::vector<const ir::Kernel*> overloadsOf(const ir::Module& module, const Callable& callable);
 
 /// The callables, in the order of their first kernels. Objects keep the names of their kernels wherever C++ allows it; their types
 /// give way.

@@ -269,6 +269,7 @@ class SourceWriter {
     for (const std::string_view source : module_.sources) files.push_back(quoted(source));
     text_ += constantList("std::string_view", "sources", files);
     text_ += constantsText(module_, program_, parts_.names, parts_.requests);
+    text_ += pipelineConstants(module_, program_, parts_.names);
     linkedFile();
     text_ += "}  // namespace\n}  // namespace sk::program\n";
   }

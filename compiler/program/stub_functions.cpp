@@ -2,6 +2,7 @@
 //
 // The callables' functions in FILE.sk.cpp, which pass their arguments to the runtime.
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -24,9 +25,7 @@ class FunctionWriter {
 
   std::string text(const std::vector<Callable>& callables) {
     for (const Callable& callable : callables) {
-      std::vector<const Kernel*> overloads;
-      for (const std::size_t unit : callable.units) overloads.push_back(&kernelOf(unit));
-      for (const SameFunction& same : sameFunctions(module_, overloads)) {
+      for (const SameFunction& same : sameFunctions(module_, overloadsOf(module_, callable))) {
         const Kernel& first = *same.kernels.front();
         for (Form form : formsOf(first)) {
           for (Uniforms uniforms : uniformsOf(first)) function(callable, same, form, uniforms);
@@ -49,11 +48,16 @@ class FunctionWriter {
   }
 
   void call(const Kernel& kernel, Form form, Uniforms uniforms) {
-    const std::string& name = nameOf(kernel);
     for (const BundleParam& bundle : kernel.bundles) {
       if (bundle.count == 0)
         text_ += fmt::format("  static_cast<void>({});  // nothing of it is read\n", bundle.name);
     }
+    if (const std::optional<std::size_t> pipeline = pipelineOf(kernel)) {
+      text_ += fmt::format("  sk::run(sk::program::{}, {}, this->options);\n", pipelineName(*pipeline),
+                           arguments(kernel, form, uniforms));
+      return;
+    }
+    const std::string& name = nameOf(kernel);
     switch (form) {
       case Form::Run: run(kernel, name, uniforms); break;
       case Form::ReduceToValue: reduceToValue(kernel, name, uniforms); break;
@@ -150,6 +154,14 @@ class FunctionWriter {
     for (const auto& [param, bundle] : cppParameters(kernel))
       names.reserve(bundle != nullptr ? bundle->name : cppName(kernel, *param));
     return names.take(std::move(name));
+  }
+
+  /// The pipeline that has this face.
+  std::optional<std::size_t> pipelineOf(const Kernel& kernel) const {
+    for (std::size_t i = 0; i < module_.pipelines.size(); ++i) {
+      if (&module_.pipelines[i].face == &kernel) return i;
+    }
+    return std::nullopt;
   }
 
   /// The prefix of the constants that describe a kernel.

@@ -165,16 +165,15 @@ class HeaderWriter {
 
   void callableObject(const Callable& callable) {
     enter(callable.scope);
-    const bool isOverloaded = callable.units.size() > 1;
-    const Kernel& first = kernelOf(callable.units[0]);
+    const std::vector<const Kernel*> overloads = overloadsOf(module_, callable);
+    const bool isOverloaded = overloads.size() > 1;
+    const Kernel& first = *overloads.front();
     text_ += "\n";
     if (!isOverloaded) text_ += comment(first.signature, 0);
     if (callable.object != first.name) {
       text_ += fmt::format("/// Called {} here, since C++ has another {}.\n", callable.object, first.name);
     }
     text_ += fmt::format("struct {0} : sk::WithOptions<{0}> {{\n", callable.type);
-    std::vector<const Kernel*> overloads;
-    for (const std::size_t unit : callable.units) overloads.push_back(&kernelOf(unit));
     for (const SameFunction& same : sameFunctions(module_, overloads)) {
       const Kernel& kernel = *same.kernels.front();
       for (const Kernel* overload : same.kernels) {
@@ -259,8 +258,6 @@ class HeaderWriter {
     }
     return start + lines + "\n";
   }
-
-  const Kernel& kernelOf(std::size_t unit) const { return module_.kernels[program_.units()[unit].id]; }
 
   const Module& module_;
   const Program& program_;

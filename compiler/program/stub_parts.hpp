@@ -31,6 +31,12 @@ std::string stubSource(const ir::Module& module, const Program& program, const S
 std::string stubFunctions(const ir::Module& module, const Program& program,
                           const std::vector<Callable>& callables);
 
+/// The constant that describes a pipeline, Module::pipelines[number].
+std::string pipelineName(std::size_t number);
+/// The descriptors of pipelines that are no kernels.
+std::string pipelineConstants(const ir::Module& module, const Program& program,
+                              const std::vector<std::string>& names);
+
 /// A callable's functions: a kernel (Fold: one with folded outputs) and a scan have one, a reduce one that returns a
 /// value and one that fills a stream.
 enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream, Scan, Fold };

@@ -43,6 +43,12 @@ TEST_CASE("a device tells what it is") {
   CHECK(es.profile() == "essl300");
   CHECK(es.limits().textureSize == 100);
   CHECK(es.limits().drawBuffers >= 4);
+  CHECK(es.limits().images == 0);
+  Device dispatching({.profile = "essl310", .limits = "guaranteed"});
+  CHECK(dispatching.profile() == "essl310");
+  CHECK(dispatching.limits().drawBuffers == 4);
+  CHECK(dispatching.limits().images == 4);
+  CHECK(dispatching.limits().uniformComponents == 512);
 }
 
 TEST_CASE("a device tells how much memory it has, if anybody does, and no more than the limit") {
@@ -87,7 +93,8 @@ TEST_CASE("a device is chosen by a part of its name, in any case") {
   CHECK(errorOf([] { Device("gpu:one"); }) ==
         "'gpu:one' names no device; after 'gpu:' comes a number, from 0");
   CHECK(errorOf([] { Device({.profile = "glsl110"}); }) ==
-        "there is no profile 'glsl110'; choose one of glsl330, essl300, glsl430 (option or SK_PROFILE)");
+        "there is no profile 'glsl110'; choose one of glsl330, essl300, glsl430, essl310 "
+        "(option or SK_PROFILE)");
 }
 
 TEST_CASE("a kernel without native code names the way out on a native device") {

@@ -93,6 +93,7 @@ Names callsOf(Work&& work) {
   SPY(glBindBufferBase);
   SPY(glBufferData);
   SPY(glGetBufferSubData);
+  SPY(glMapBufferRange);
   called.clear();
   work();
   return called;
@@ -131,7 +132,7 @@ TEST_CASE("a call draws, and sets what has changed") {
 }
 
 TEST_CASE("a call dispatches, and sets what has changed") {
-  Device device(DeviceOptions{.profile = "glsl430"});
+  Device device(DeviceOptions{.profile = GENERATE("glsl430", "essl310")});
   Streams of(device);
   CHECK(callsOf([&] { saxpy()(2.0f, of.x, of.y, of.r); }) == Names{"glDispatchCompute", "glMemoryBarrier"});
   CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.r); }) ==
@@ -141,7 +142,7 @@ TEST_CASE("a call dispatches, and sets what has changed") {
 }
 
 TEST_CASE("a loop gives the commands again that change something") {
-  for (const std::string profile : {"glsl330", "essl300", "glsl430"}) {
+  for (const std::string profile : {"glsl330", "essl300", "glsl430", "essl310"}) {
     CAPTURE(profile);
     Device device(DeviceOptions{.profile = profile});
     Streams of(device);
@@ -150,7 +151,7 @@ TEST_CASE("a loop gives the commands again that change something") {
       std::swap(of.y, of.r);
     });
     loop.repeat(7);
-    const bool isDispatched = profile == "glsl430";
+    const bool isDispatched = profile == "glsl430" || profile == "essl310";
     const Names one =
         isDispatched ? Names{"glBindTexture", "glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"}
                      : Names{"glBindTexture", "glBindFramebuffer", "glDrawArrays"};
@@ -170,7 +171,7 @@ TEST_CASE("a loop gives the commands again that change something") {
 TEST_CASE("a loop that the device ends is queued with counts from a buffer") {
   static const TestKernel isLarge("isLarge", "void isLarge(float x, out bool r) { r = x > 900.0; }\n",
                                   {input<float>("x"), output<bool>("r")});
-  Device device(DeviceOptions{.profile = "glsl430"});
+  Device device(DeviceOptions{.profile = GENERATE("glsl430", "essl310")});
   Streams of(device);
   auto done = device.stream<bool>({8, 8});
   const float two = 2;
@@ -188,12 +189,13 @@ TEST_CASE("a loop that the device ends is queued with counts from a buffer") {
   CHECK(std::ranges::count(calls, "glDispatchCompute") == 24);  // of the gate
   CHECK(std::ranges::count(calls, "glDrawArrays") == 0);
   CHECK(std::ranges::count(calls, "glReadPixels") == 0);
-  CHECK(std::ranges::count(calls, "glGetBufferSubData") <= 4);
+  CHECK(std::ranges::count(calls, "glGetBufferSubData") + std::ranges::count(calls, "glMapBufferRange") <= 4);
 }
 
 // On a GPU, reading a texel back takes longer than computing a small sum.
 TEST_CASE("the value of a dispatched reduction comes through a buffer") {
-  Device device(DeviceOptions{.profile = "glsl430"});
+  const std::string profile = GENERATE("glsl430", "essl310");
+  Device device(DeviceOptions{.profile = profile});
   const TestReduction sum("sum", "void sum(float x, inout float total) { total += x; }\n",
                           {input<float>("x"), accumulator<float>("total", "0.0")}, true);
   auto x = device.stream<float>({8, 8});
@@ -203,7 +205,38 @@ TEST_CASE("the value of a dispatched reduction comes through a buffer") {
         Names{"glUseProgram", "glBindTexture", "glDispatchCompute", "glMemoryBarrier",  // folds the elements
               "glUseProgram", "glBindTexture", "glDispatchCompute",
               "glMemoryBarrier",  // folds the work groups' partial results
-              "glMemoryBarrier", "glGetBufferSubData", "glGetError"});
+              "glMemoryBarrier", profile == "essl310" ? "glMapBufferRange" : "glGetBufferSubData",
+              "glGetError"});
+}
+
+TEST_CASE("what compute programs of OpenGL ES cannot write is drawn") {
+  static const TestKernel two("two", "void two(float x, out vec2 r) { r = vec2(x, 2.0 * x); }\n",
+                              {input<float>("x"), output<float2>("r")});
+  static const TestKernel four("four", "void four(float x, out vec4 r) { r = vec4(x); }\n",
+                               {input<float>("x"), output<float4>("r")});
+  Device device({.profile = "essl310", .limits = "guaranteed"});
+  CHECK(device.profile() == "essl310");
+  CHECK(device.limits().images == 4);
+  auto x = device.stream<float>({8, 8});
+  x.write(std::vector<float>(64, 3.0f));
+  auto pairs = device.stream<float2>({8, 8});
+  auto fours = device.stream<float4>({8, 8});
+  two(x, pairs);
+  four(x, fours);
+  const auto has = [](const Names& calls, std::string_view name) {
+    return std::ranges::count(calls, name) > 0;
+  };
+  const Names ofPairs = callsOf([&] { two(x, pairs); }), ofFours = callsOf([&] { four(x, fours); });
+  CHECK(has(ofPairs, "glDrawArrays"));
+  CHECK_FALSE(has(ofPairs, "glDispatchCompute"));
+  CHECK_FALSE(has(ofFours, "glDrawArrays"));
+  CHECK(has(ofFours, "glDispatchCompute"));
+  CHECK(pairs.read()[63].y == 6);
+  CHECK(fours.read()[63].w == 3);
+  const Argument arguments[] = {argumentOf(x), argumentOf(pairs)};
+  CHECK(errorOf([&] {
+          run(two.kernel(), arguments, {.target = Target::Compute});
+        }).find("that fit the device's 4 images and their formats") != std::string::npos);
 }
 
 // A software renderer copies all of its state when a uniform of the fragment program changes.

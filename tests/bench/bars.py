@@ -25,6 +25,8 @@ RATIOS += [
     ("native", DIFFUSE, ["Embree"], 0.35, LARGE),
     ("compute", PRIMARY + DIFFUSE, ["CUDA"], 1.0, LARGE),
 ]
+# Our contender, programs, another way of ours, peers, least ratio, from which size on.
+WAY_RATIOS = [("native", ["sgemm"], "contracted", ["OpenBLAS"], 0.6, LARGE)]
 # Our contender, programs, elements a second in millions, whether the renderer is in software.
 RATES = [
     ("fragment", PRIMARY, 3, True),
@@ -49,10 +51,8 @@ OWN_RATIOS = [
     ("compute", ["heat loop", "gray-scott loop"], "calls", 1.5, 24),  # on GPUs
 ]
 # Our contender, program, another way of ours, most that the first takes of its time, from which size on.
-OWN_COSTS = [
-    ("native", "chain of four", "in one kernel", 1.15, 24),
-    ("compute", "chain of four", "in one kernel", 1.15, 24),  # on GPUs
-]
+OWN_COSTS = [("native", name, "in one kernel", 1.15, 24) for name in ("chain of four", "pipeline of four")]
+OWN_COSTS += [("compute", name, "in one kernel", 1.15, 24) for name in ("chain of four", "pipeline of four")]  # on GPUs
 # Our contender, program, the program whose bytes a second it is measured by, least part of them, log2 of the size of both.
 BANDWIDTHS = [("native", "5-point matrix", "saxpy", 0.9, 24)]
 # Our contender, program, log2 of the size, what a run is so many of, most seconds for one.
@@ -75,6 +75,10 @@ def judge(found):
         if ours in found.ours() and set(peers) & set(found.peers()):
             for program in programs:
                 rows.append(ratio_row(found, program, [ours], peers, least, smallest))
+    for ours, programs, way, peers, least, smallest in WAY_RATIOS:
+        if ours in found.ours() and set(peers) & set(found.peers()):
+            rows += [ratio_row(found, program, [f"{ours} {way}"], peers, least, smallest) for program in programs
+                     if found.sizes(program)]
     for ours, programs, least, in_software in RATES:
         rows += [rate_row(found, program, ours, least) for program in programs
                  if found.sizes(program) and ours in found.ours() and is_software(found) == in_software]

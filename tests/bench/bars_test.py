@@ -47,6 +47,12 @@ class Loops(unittest.TestCase):
             held = verdicts({("sum", 24, "native"): 1.0, ("sum", 24, "native compensated"): taken})
             self.assertEqual(held[name], holds)
 
+    def test_ways_against_peers(self):
+        name = "sgemm: native contracted against OpenBLAS"
+        for taken, holds in ((1.6, "yes"), (1.7, "NO")):
+            held = verdicts({("sgemm", 20, "native"): 3.0, ("sgemm", 20, "native contracted"): taken, ("sgemm", 20, "OpenBLAS"): 1.0})
+            self.assertEqual(held[name], holds)
+
 
 if __name__ == "__main__":
     unittest.main()

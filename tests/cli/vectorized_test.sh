@@ -77,6 +77,15 @@ for level in x86-64-v3 x86-64-v4; do
          /^\tj/ && products > 4 && !found { print spills; found = 1 }' >spills
   [[ $(<spills) == 0 ]] || { echo "broken: sums of a product of matrices are spilled on $level"; exit 1; }
 done
+# Its indices are tested before the loop: an iteration is one block that jumps back to itself, and its addresses are in registers.
+for level in x86-64-v3 x86-64-v4; do
+  "$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels="$level" kernel.sk |
+    sed -n "/_multiply\.rows\.v${level: -1}\.contracted:/,/retq/p" |
+    awk '/^\.LBB/ { label = substr($1, 1, length($1) - 1); products = loads = 0 } /vfmadd/ { ++products } /rsp/ { ++loads }
+         /^\tj/ && products > 4 && $2 == label { print loads }' >loads
+  [[ -s loads ]] || { echo "broken: a product of matrices tests indices in its loop on $level"; exit 1; }
+  (($(<loads) < 3)) || { echo "broken: addresses in a product of matrices are spilled on $level"; exit 1; }
+done
 # The vectors that all rows share are those of b, whose bit says so (Code::sharedGathers).
 "$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk >kernel.ll
 grep -q '_multiply = hidden constant .*, i64 2 }' kernel.ll ||

@@ -40,7 +40,7 @@ TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang acc
     docs::writeFile(folder / docs::fileName(*block), docs::wholeFile(*block));
     files += fmt::format(" '{}'", docs::fileName(*block));
   }
-  for (const std::string profile : {"glsl330", "glsl430", "essl300"}) {
+  for (const std::string profile : {"glsl330", "glsl430", "essl300", "essl310"}) {
     const docs::Outcome outcome = docs::run(
         fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
     INFO(outcome.output);

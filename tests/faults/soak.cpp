@@ -120,8 +120,8 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{
       "soak: makes calls of all kinds in random order; memory, GL objects and results must stay as they are"};
-  app.add_option("--target", options.target, "What to run on: native, glsl330, glsl430 or essl300")
-      ->check(CLI::IsMember({"native", "glsl330", "glsl430", "essl300"}))
+  app.add_option("--target", options.target, "What to run on: native, glsl330, glsl430, essl300 or essl310")
+      ->check(CLI::IsMember({"native", "glsl330", "glsl430", "essl300", "essl310"}))
       ->capture_default_str();
   app.add_option("--calls", options.calls, "How many calls")
       ->check(CLI::Range(std::uint64_t{100}, std::uint64_t{1} << 40U))

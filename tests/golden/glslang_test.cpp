@@ -137,7 +137,7 @@ TEST_CASE("glslang takes every program of every .sk file") {
   std::erase_if(goldens, [](const fs::path& file) { return file.parent_path().filename() != "golden"; });
   CHECK(goldens.size() >= 8);
   std::map<std::string, std::vector<std::string>> all;  // by profile
-  for (const char* profile : {"glsl430", "essl300"}) all[profile] = programsOf(files, profile);
+  for (const char* profile : {"glsl430", "essl300", "essl310"}) all[profile] = programsOf(files, profile);
   all["glsl330"] = programsOf(goldens, "glsl330");
   CHECK(all["essl300"].size() >= files.size());
   for (const auto& [profile, programs] : all) {

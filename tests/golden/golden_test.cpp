@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What skc writes for the .sk files of this folder is what lies beside them: FILE.glsl330, FILE.glsl430 and
-// FILE.essl300 (abbreviated, see abbreviation.hpp), FILE.ir and FILE.stub (the header); of reach.sk, FILE.plan. With
+// What skc writes for the .sk files of this folder is what lies beside them: FILE.glsl330, FILE.glsl430,
+// FILE.essl300 and FILE.essl310 (abbreviated, see abbreviation.hpp), FILE.ir and FILE.stub (the header); of reach.sk, FILE.plan. With
 // SK_UPDATE_GOLDENS=1 in the environment the expected texts are written anew; read what `git diff` then shows.
 #include <cstdlib>
 #include <iterator>
@@ -23,7 +23,8 @@ struct Kind {
 };
 constexpr Kind glslKinds[] = {{".glsl330", "--emit=glsl --profile=glsl330"},
                               {".essl300", "--emit=glsl --profile=essl300"},
-                              {".glsl430", "--emit=glsl --profile=glsl430"}};
+                              {".glsl430", "--emit=glsl --profile=glsl430"},
+                              {".essl310", "--emit=glsl --profile=essl310"}};
 constexpr Kind otherKinds[] = {{".ir", "--emit=ir"}, {".stub", "--emit=stubs"}};
 
 const std::vector<std::string> names = {"heat",           "particles", "loops", "folds",

@@ -100,7 +100,7 @@ class Cache {
 };
 
 TEST_CASE("every barrier that a device takes for good keeps sums exact") {
-  for (const std::string profile : {"glsl330", "essl300"}) {
+  for (const std::string profile : {"glsl330", "essl300", "essl310"}) {
     for (const std::string barrier : {"", "xor"}) {
       INFO(profile << " '" << barrier << "'");
       sk::Device device = deviceOf(profile, barrier);

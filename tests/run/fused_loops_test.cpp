@@ -15,25 +15,13 @@
 #include "fused_loops.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/same_bits.hpp"
 
 namespace run_tests {
 namespace {
 
 using Catch::Matchers::Contains;
 using Field = sk::Stream<float>;
-
-std::vector<float> drawn(std::int64_t count, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<float> values(-1, 1);
-  std::vector<float> x(static_cast<std::size_t>(count));
-  for (float& value : x) value = values(engine);
-  return x;
-}
-
-template <class T>
-bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
 
 constexpr Layout glLayouts[] = {{"glsl330", 0}, {"glsl430", 0}, {"essl300", 0}, {"glsl330", smallLimits[1]}};
 

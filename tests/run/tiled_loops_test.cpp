@@ -14,6 +14,7 @@
 #include <catch2/catch.hpp>
 
 #include "sk/sk.hpp"
+#include "support/same_bits.hpp"
 #include "support/streams.hpp"
 #include "tiled_loops.sk.hpp"
 
@@ -22,18 +23,6 @@ namespace {
 
 using Catch::Matchers::Contains;
 using Field = sk::Stream<float>;
-
-std::vector<float> drawn(std::int64_t count, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<float> values(-1, 1);
-  std::vector<float> x(static_cast<std::size_t>(count));
-  for (float& value : x) value = values(engine);
-  return x;
-}
-
-bool haveSameBits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
 
 /// Four fields that calls use by number, so that a swap exchanges what the numbers mean.
 struct Fields {

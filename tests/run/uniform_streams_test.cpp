@@ -108,7 +108,7 @@ TEST_CASE("reductions, scans and append outputs take uniforms from streams") {
     CHECK(kept.size() == 60);
     auto counts = device.stream<int>({15});
     counts.fill(0);
-    if (device.profile() != "essl300") {
+    if (!device.profile().starts_with("essl")) {
       scalars::bins(seven, numbers, counts);
       CHECK(counts.read()[2] == 210);
     }
@@ -126,7 +126,8 @@ TEST_CASE("uniforms come from streams in every storage and precision, and in sev
       CHECK(y.read()[1] == 2.25f);
       for (const sk::Precision precision :
            {sk::Precision::Half, sk::Precision::Extended, sk::Precision::Double}) {
-        if (precision == sk::Precision::Double && device.profile() == "essl300") continue;  // has no doubles
+        if (precision == sk::Precision::Double && device.profile().starts_with("essl"))
+          continue;  // has no doubles
         scalars::scale.with({.precision = precision})(a, x, y);
         CHECK(y.read()[1] == 2.25f);
       }

@@ -21,6 +21,7 @@
 #include "frontend/clang_limits.hpp"
 #include "frontend/lower/aliases.hpp"
 #include "frontend/lower/module_lowering.hpp"
+#include "frontend/lower/pipeline.hpp"
 #include "frontend/tokens/float_literals.hpp"
 #include "support/function_ref.hpp"
 
@@ -47,6 +48,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
 
   /// `aliases`: the version for calls whose references name parts of one object.
   ir::Function function(const clang::FunctionDecl* declaration, const Aliases& aliases = {});
+  /// The function of a pass, whose steps call kernels.
+  ir::Function pass(const PassSource& source);
   /// True for a member function that returns `S&`, which can only end with `return *this;`. It is void in the
   /// IR, and a call's value is the object.
   static bool returnsThis(const clang::FunctionDecl* declaration);
@@ -273,6 +276,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::map<Bundles::Place, ir::VarId> members_;  ///< of bundles
+  /// Of a pass: streams, and the parameters of kernels that read them as gathers.
+  std::map<std::pair<const clang::VarDecl*, const clang::ParmVarDecl*>, ir::VarId> gathers_;
   std::unordered_set<const clang::Decl*> initialising_;  ///< variables whose initial values are being lowered
   std::unordered_map<ir::VarId, ir::ExprPtr> aliases_;  ///< what parameters name that are parts of others
   std::optional<ir::VarId> this_;

@@ -184,9 +184,11 @@ std::uint32_t ModuleLowering::numberOf(const clang::CallExpr* assertion) {
 void ModuleLowering::addAssertionChecks() {
   const std::size_t declared = module_.kernels.size();
   for (ir::KernelId id = 0; id < declared; ++id) {
-    const clang::FunctionDecl* declaration = kernelDeclarations_[id];
-    if (module_.kernels[id].isSynthesized || marksOf(declaration).assertion == nullptr) continue;
-    const ir::FunctionId checked = function(declaration, declaration->getLocation(), {}, /*checks=*/true);
+    const auto [declaration, checkOfPass] = kernelOrigins_[id];
+    const bool asserts = declaration != nullptr && marksOf(declaration).assertion != nullptr;
+    if (module_.kernels[id].isSynthesized || !(asserts || checkOfPass)) continue;
+    const ir::FunctionId checked =
+        checkOfPass ? *checkOfPass : function(declaration, declaration->getLocation(), {}, /*checks=*/true);
     ir::Function entry = ir::clone(module_.functions[checked]);
     const ir::VarId failed = entry.parameterCount - 1;
     entry.body.insert(entry.body.begin(), ir::assign(ir::varRef(entry, failed, entry.loc),

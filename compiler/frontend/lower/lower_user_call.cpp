@@ -41,6 +41,11 @@ std::vector<FunctionLowering::Argument> FunctionLowering::argumentsOf(
   Bundles& bundles = module_.bundles();
   for (const Bundles::Source& source : bundles.parametersOf(callee->getDefinition())) {
     const clang::Expr* given = argumentFor(e, callee, source.parameter);
+    const auto gather = gathers_.find({streamNamed(module_, given), source.parameter});
+    if (gather != gathers_.end()) {
+      arguments.push_back({given, false, nullptr, gather->second});
+      continue;
+    }
     if (source.member.empty()) {
       const bool isReference = source.parameter == nullptr || source.parameter->getType()->isReferenceType();
       arguments.push_back({given, isReference && namesObject(given)});

@@ -17,6 +17,7 @@
 #include "frontend/lower/convert_literal.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/lower/lower_module.hpp"
+#include "frontend/lower/pipeline.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
 #include "ir/call_graph.hpp"
@@ -105,7 +106,7 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
           fail(Diag::KernelBody, function->getLocation(), {function->getNameAsString()});
         if (!function->isThisDeclarationADefinition() || function->isDependentContext()) continue;
         if (kernelSyntax) {
-          kernel(function, *kernelSyntax);
+          declared(function, *kernelSyntax, function->getLocation());
         } else {
           this->function(function, function->getLocation());
           if (marksOf(function).assertion != nullptr)
@@ -120,21 +121,33 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
 
 // ---- kernels ------------------------------------------------------------------------------------
 
+/// `where`: what decides whether it is this file's.
+void ModuleLowering::declared(const clang::FunctionDecl* declaration, const KernelSyntax& syntax,
+                              SourceLocation where) {
+  if (!declaration->getReturnType()->isVoidType())
+    fail(Diag::KernelResult, declaration->getLocation(),
+         {wordOf(syntax.kind), declaration->getNameAsString()});
+  if (syntax.kind != FunctionKind::Pipeline) return kernel(declaration, syntax);
+  if (isOwn(where)) lowerPipeline(*this, declaration, syntax);
+}
+
+/// Remembers the constants that hold what a kernel's parameters declare.
+void ModuleLowering::noteGenerated(const clang::FunctionDecl* kernel) {
+  generated_.clear();
+  const auto* body = llvm::dyn_cast_or_null<clang::CompoundStmt>(kernel->getBody());
+  if (body == nullptr) return;
+  for (const clang::Stmt* stmt : body->body()) {
+    const auto* declared = llvm::dyn_cast<clang::DeclStmt>(stmt);
+    const auto* variable = declared && declared->isSingleDecl()
+                               ? llvm::dyn_cast<clang::VarDecl>(declared->getSingleDecl())
+                               : nullptr;
+    if (variable && isGenerated(variable)) generated_[variable->getName().str()] = variable;
+  }
+}
+
 void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax) {
   const SourceLocation where = declaration->getLocation();
-  if (!declaration->getReturnType()->isVoidType()) {
-    fail(Diag::KernelResult, where, {wordOf(syntax.kind), declaration->getNameAsString()});
-  }
-  generated_.clear();
-  if (const auto* body = llvm::dyn_cast_or_null<clang::CompoundStmt>(declaration->getBody())) {
-    for (const clang::Stmt* stmt : body->body()) {
-      const auto* declared = llvm::dyn_cast<clang::DeclStmt>(stmt);
-      const auto* variable = declared && declared->isSingleDecl()
-                                 ? llvm::dyn_cast<clang::VarDecl>(declared->getSingleDecl())
-                                 : nullptr;
-      if (variable && isGenerated(variable)) generated_[variable->getName().str()] = variable;
-    }
-  }
+  noteGenerated(declaration);
   ir::Kernel kernel;
   kernel.name = declaration->getNameAsString();
   kernel.scope = scopeOf(declaration);
@@ -159,7 +172,7 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   const bool isInstance =
       declaration->getTemplateSpecializationKind() == clang::TSK_ExplicitInstantiationDefinition;
   isOwn_.push_back(isOwn(isInstance ? declaration->getPointOfInstantiation() : where));
-  kernelDeclarations_.push_back(declaration);
+  kernelOrigins_.push_back({declaration});
   if (isOwn_.back() && marksOf(declaration).assertion != nullptr)
     function(declaration, where, {}, /*checks=*/true);  // its mistakes come here, in the order of the file
   module_.kernels.push_back(std::move(kernel));
@@ -175,7 +188,7 @@ void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declarati
     if (instance->getTemplateSpecializationKind() != clang::TSK_ExplicitInstantiationDefinition) continue;
     const SourceLocation point = instance->getPointOfInstantiation();
     if (kernelSyntax) {
-      kernel(instance, *kernelSyntax);
+      declared(instance, *kernelSyntax, point);
     } else if (syntax_.isInstantiation(point)) {
       fail(Diag::NotAKernelTemplate, point, {declaration->getNameAsString()});
     }
@@ -242,7 +255,6 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ValueDecl* declaration,
   return param;
 }
 
-/// Checks an element type of a stream, which may not contain arrays.
 void ModuleLowering::checkElement(ir::Type type, std::string_view name, SourceLocation where) {
   if (type.kind == ir::Type::Kind::Array) fail(Diag::ArrayAsElement, where, {name});
   if (type.kind != ir::Type::Kind::Struct) return;
@@ -474,6 +486,10 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
                                         const Aliases& aliases, bool checks) {
   const clang::FunctionDecl* definition = declaration->getDefinition();
   if (!definition) fail(Diag::FunctionWithoutBody, use, {declaration->getNameAsString()});
+  if (const KernelSyntax* kernel = syntax_.kernel(definition->getLocation());
+      kernel != nullptr && kernel->kind == FunctionKind::Pipeline) {
+    fail(Diag::PipelineCalled, use, {declaration->getNameAsString()});
+  }
   const Version key{definition, aliases.key(), checks};
   const auto found = functions_.find(key);
   if (found != functions_.end()) {

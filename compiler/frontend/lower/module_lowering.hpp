@@ -52,6 +52,8 @@ class ModuleLowering {
   std::optional<int> appendRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
   /// The role of a kernel's parameter, or of a member of a bundle.
   ir::ParamRole roleOf(const clang::ValueDecl* declared) const;
+  /// Checks an element type of a stream, which may not contain arrays.
+  void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
   /// Reports a bundle where a value is needed.
   [[noreturn]] void refuseBundle(clang::QualType type, clang::SourceLocation use);
 
@@ -102,6 +104,7 @@ class ModuleLowering {
                          std::initializer_list<std::string_view> arguments = {});
 
  private:
+  friend class PipelineLowering;
   enum class Progress : std::uint8_t { Lowering, Done, Failed };
   struct FunctionEntry {
     ir::FunctionId id;
@@ -110,6 +113,9 @@ class ModuleLowering {
 
   void declarations(const clang::DeclContext* scope);
   void kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax);
+  void declared(const clang::FunctionDecl* declaration, const KernelSyntax& syntax,
+                clang::SourceLocation where);
+  void noteGenerated(const clang::FunctionDecl* kernel);
   void kernelTemplate(const clang::FunctionTemplateDecl* declaration);
   void nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel);
   std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
@@ -117,7 +123,6 @@ class ModuleLowering {
   std::uint32_t bundleType(const clang::CXXRecordDecl* record);
   ir::KernelParam kernelParam(const clang::ValueDecl* declaration, std::string name,
                               const ir::Variable& variable);
-  void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
   void checkFoldedOutputs(const ir::Kernel& kernel, const KernelSyntax& syntax);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();
@@ -168,7 +173,12 @@ class ModuleLowering {
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
   bool inlineConstants_ = false;
   std::vector<bool> isOwn_;  ///< by kernel: the main file's stubs offer it
-  std::vector<const clang::FunctionDecl*> kernelDeclarations_;
+  /// What a kernel was lowered from: a declaration or, for null, a pipeline, of which some passes have a version that checks assertions.
+  struct Origin {
+    const clang::FunctionDecl* declaration;
+    std::optional<ir::FunctionId> check = {};
+  };
+  std::vector<Origin> kernelOrigins_;  ///< by kernel
 };
 
 }  // namespace skc::frontend

@@ -65,12 +65,12 @@ void ModuleLowering::keepOwnKernels() {
   }
   std::vector<ir::KernelId> numbers;
   std::vector<ir::Kernel> kernels;
-  std::vector<const clang::FunctionDecl*> declarations;
+  std::vector<Origin> origins;
   for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
     numbers.push_back(static_cast<ir::KernelId>(kernels.size()));
     if (!stays[id]) continue;
     kernels.push_back(std::move(module_.kernels[id]));
-    declarations.push_back(kernelDeclarations_[id]);
+    origins.push_back(kernelOrigins_[id]);
     kernels.back().isSynthesized = !isOffered[id];
   }
   for (ir::Kernel& kernel : kernels) {
@@ -78,7 +78,10 @@ void ModuleLowering::keepOwnKernels() {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
   }
   module_.kernels = std::move(kernels);
-  kernelDeclarations_ = std::move(declarations);
+  kernelOrigins_ = std::move(origins);
+  for (ir::Pipeline& pipeline : module_.pipelines) {
+    for (ir::PipelinePass& pass : pipeline.passes) pass.kernel = numbers[pass.kernel];
+  }
 }
 
 namespace {

@@ -113,6 +113,28 @@ bool StreamEditor::fail(Diag diag, const Token& location, std::initializer_list<
   return false;
 }
 
+namespace {
+
+/// True for the last token of a type in front of a name.
+bool endsType(const Token& token) {
+  return token.isOneOf(tok::identifier, tok::greater, tok::kw_float, tok::kw_double, tok::kw_int,
+                       tok::kw_unsigned, tok::kw_char, tok::kw_short, tok::kw_long, tok::kw_bool);
+}
+
+}  // namespace
+
+bool atLocalStream(const TokenCursor& cursor, const Token& before, Diagnostics& diagnostics) {
+  if (!cursor.at(tok::identifier) || cursor.peek(1).isNot(tok::less)) return false;
+  const bool isEmpty = cursor.peek(2).is(tok::greater);
+  const bool isDeclared = endsType(before) || (isEmpty && before.is(tok::comma));
+  if (!isDeclared) return false;
+  if (isEmpty && cursor.peek(3).isOneOf(tok::comma, tok::semi)) return true;
+  const std::size_t end = isEmpty ? 0 : cursor.endOfList(1);
+  const bool isTemplate = end != 0 && cursor.at(end + 1, tok::identifier);  // `const Pair<float> p = ...;`
+  if (!isTemplate) diagnostics.report(Diag::LocalStreamForm, locOf(cursor.peek()), {nameOf(cursor.peek())});
+  return false;
+}
+
 namespace tok = clang::tok;
 
 namespace {

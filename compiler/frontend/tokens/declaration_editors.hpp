@@ -57,6 +57,10 @@ class StreamEditor {
   int& constants_;
 };
 
+/// True at the `t` of `t<>` in the body of a pipeline, behind the token `before`, where it declares a stream. Reports
+/// streams with extents or values.
+bool atLocalStream(const TokenCursor& cursor, const clang::Token& before, Diagnostics& diagnostics);
+
 class ConstructorEditor {
  public:
   explicit ConstructorEditor(TokenBuilder builder) : builder_(builder) {}
@@ -72,14 +76,14 @@ class ConstructorEditor {
   struct Name {
     std::size_t begin;
     std::string path;
-    bool isGlobal = false;   ///< preceded by `::`
+    bool isGlobal = false;  ///< preceded by `::`
   };
   struct Alias {
-    std::string path;    ///< names of the enclosing braces, then its own
+    std::string path;  ///< names of the enclosing braces, then its own
     std::string vector;
   };
   struct Brace {
-    std::string name;    ///< "::a" of a namespace, which may be reopened; else unique
+    std::string name;  ///< "::a" of a namespace, which may be reopened; else unique
     bool holdsStatements;
   };
 
@@ -95,15 +99,15 @@ class ConstructorEditor {
   TokenBuilder builder_;
   bool constructsIndices_ = true;
   std::vector<Alias> aliases_;
-  std::vector<Brace> braces_;     ///< open ones
+  std::vector<Brace> braces_;  ///< open ones
   int bracesSeen_ = 0;
-  std::string namespace_;         ///< the name after `namespace`, until its brace
+  std::string namespace_;  ///< the name after `namespace`, until its brace
   bool sawNamespace_ = false;
-  bool sawRecord_ = false;        ///< `struct` or similar, in this statement
-  bool sawConst_ = false;         ///< `const` or `constexpr`, in this statement
-  bool sawConstraint_ = false;    ///< `requires`, in this declaration
-  std::string declared_;          ///< vector type of the variables being declared, or empty
-  int depth_ = 0;                 ///< of parentheses and brackets, in this declaration
+  bool sawRecord_ = false;  ///< `struct` or similar, in this statement
+  bool sawConst_ = false;  ///< `const` or `constexpr`, in this statement
+  bool sawConstraint_ = false;  ///< `requires`, in this declaration
+  std::string declared_;  ///< vector type of the variables being declared, or empty
+  int depth_ = 0;  ///< of parentheses and brackets, in this declaration
 };
 
 /// True if the attributes that follow begin with a table.

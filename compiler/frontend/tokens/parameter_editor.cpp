@@ -457,7 +457,9 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (!isMember && parts.type.front().isNot(tok::kw_const) && !parts.isArrayReference)
+      // of an input of a pipeline that is an output of a kernel, lowering says more than Clang
+      if (!isMember && parts.type.front().isNot(tok::kw_const) && !parts.isArrayReference &&
+          !(kind == FunctionKind::Pipeline && syntax.role == ir::ParamRole::Input))
         out.push_back(builder_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;

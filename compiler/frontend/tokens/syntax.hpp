@@ -23,7 +23,7 @@ class IdentifierInfo;
 
 namespace skc::frontend {
 
-enum class FunctionKind : std::uint8_t { Kernel, Reduce, Scan, Helper };
+enum class FunctionKind : std::uint8_t { Kernel, Reduce, Scan, Pipeline, Helper };
 
 /// Whether it folds elements into accumulators.
 constexpr bool isFold(FunctionKind kind) {
@@ -35,6 +35,7 @@ constexpr std::string_view wordOf(FunctionKind kind) {
     case FunctionKind::Kernel: return "kernel";
     case FunctionKind::Reduce: return "reduce";
     case FunctionKind::Scan: return "scan";
+    case FunctionKind::Pipeline: return "pipeline";
     case FunctionKind::Helper: break;
   }
   return "function";
@@ -42,7 +43,7 @@ constexpr std::string_view wordOf(FunctionKind kind) {
 
 struct KernelSyntax {
   FunctionKind kind = FunctionKind::Kernel;
-  clang::SourceLocation keyword;     ///< of `kernel`, `reduce` or `scan`
+  clang::SourceLocation keyword;     ///< of `kernel`, `reduce`, `scan` or `pipeline`
   ir::Choices choices;
   std::string signature;             ///< the declaration on one line, as written
 };
@@ -104,6 +105,12 @@ class DeclarationSyntax {
     return instantiations_.contains(name.getRawEncoding());
   }
 
+  /// `name`: of a stream that a pipeline declares: `float t<>;`
+  void addLocalStream(clang::SourceLocation name) { localStreams_.insert(name.getRawEncoding()); }
+  bool isLocalStream(clang::SourceLocation name) const {
+    return localStreams_.contains(name.getRawEncoding());
+  }
+
   const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
   const StreamSyntax* stream(clang::SourceLocation name) const { return find(streams_, name); }
   const TableSyntax* table(clang::SourceLocation name) const { return find(tables_, name); }
@@ -125,7 +132,7 @@ class DeclarationSyntax {
   std::unordered_map<std::uint32_t, ParamSyntax> params_;
   std::unordered_map<std::uint32_t, StreamSyntax> streams_;
   std::unordered_map<std::uint32_t, TableSyntax> tables_;
-  std::unordered_set<std::uint32_t> instantiations_;
+  std::unordered_set<std::uint32_t> instantiations_, localStreams_;
 };
 
 }  // namespace skc::frontend

@@ -57,12 +57,14 @@ class Editor {
   bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
   bool atKernel() const { return isKernelWord(cursor_.peek()) && startsType(cursor_.peek(1)); }
   static bool isKernelWord(const Token& token) {
-    return isWord(token, "kernel") || isWord(token, "reduce") || isWord(token, "scan");
+    return isWord(token, "kernel") || isWord(token, "reduce") || isWord(token, "scan") ||
+           isWord(token, "pipeline");
   }
   static FunctionKind kindOf(const Token& word) {
-    return isWord(word, "reduce") ? FunctionKind::Reduce
-           : isWord(word, "scan") ? FunctionKind::Scan
-                                  : FunctionKind::Kernel;
+    return isWord(word, "reduce")     ? FunctionKind::Reduce
+           : isWord(word, "scan")     ? FunctionKind::Scan
+           : isWord(word, "pipeline") ? FunctionKind::Pipeline
+                                      : FunctionKind::Kernel;
   }
   void editDeclaration() {
     if (!std::exchange(isBehindTemplate_, false)) declarationBegin_ = out_.size();
@@ -295,6 +297,7 @@ class Editor {
     }
     const std::vector<Token> edited = parameters.edit(declared, kernel.kind);
     kernel.signature = signature(start, head, declared);
+    const bool isPipeline = kernel.kind == FunctionKind::Pipeline;
     syntax_.add(head[at].getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());
     out_.insert(out_.end(), edited.begin(), edited.end());
@@ -302,7 +305,7 @@ class Editor {
     if (cursor_.at(tok::l_brace)) {
       for (const ParameterEditor::Input& input : parameters.inputs()) rejectIfOnlyAssigned(input);
       rejectCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
-      return copyBody(constants);
+      return copyBody(constants, isPipeline);
     }
     if (cursor_.at(tok::semi)) return copyToken();
     diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head[at])});
@@ -406,14 +409,27 @@ class Editor {
   bool isValueAhead() const { return out_.size() > 1 && out_[out_.size() - 2].is(tok::equal); }
 
   /// The parameters' constants go first in the body, where a template's own types are known.
-  void copyBody(const std::vector<Token>& constants) {
+  void copyBody(const std::vector<Token>& constants, bool isPipeline) {
     copyToken();
     out_.insert(out_.end(), constants.begin(), constants.end());
     for (int depth = 1; depth > 0 && !cursor_.at(tok::eof); copyToken()) {
       checkInner();
+      while (isPipeline && takesLocalStream()) {
+      }
       if (cursor_.at(tok::l_brace)) ++depth;
       if (cursor_.at(tok::r_brace)) --depth;
     }
+  }
+
+  /// Turns `t<>` in `float t<>, u<>;`, which declares streams of a pipeline, into `t{}`: Clang sees elements.
+  bool takesLocalStream() {
+    if (!atLocalStream(cursor_, out_.back(), diagnostics_)) return false;
+    const TokenBuilder builder(preprocessor_);
+    syntax_.addLocalStream(cursor_.peek().getLocation());
+    copyToken();
+    for (const tok::TokenKind bracket : {tok::l_brace, tok::r_brace})  // no warning of values that are not there
+      out_.push_back(builder.make(bracket, cursor_.take().getLocation()));
+    return true;
   }
 
   void copyTokens(std::size_t count) {

@@ -252,6 +252,13 @@ void fold(const program::Reduction& reduction, std::span<const Argument> argumen
 void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
           const CallOptions& options = {});
 
+/// Calls the kernels of a pipeline, in order. Its domain is the shape of its outputs; without any, that of `options.over` or of its
+/// inputs together. Throws sk::Error like run() and reduce(), before any kernel has run if the shapes or the streams do not
+/// match what the pipeline says of them; if an output's stream is read by a kernel after the one that writes it, under another
+/// name; if memory for its local streams is exhausted; and for options of single calls: a box, or those of scans.
+void run(const program::Pipeline& pipeline, std::span<const Argument> arguments,
+         const CallOptions& options = {});
+
 namespace detail {
 
 /// The rank of a gather's argument, by which stubs choose among kernels; 0 if none is given.

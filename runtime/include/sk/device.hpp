@@ -44,9 +44,10 @@ struct DeviceOptions {
   /// .sk file of the program has no native code or an option below needs GL (docs/runtime.md, The best
   /// device).
   std::string device = {};
-  /// "glsl330" (fragment programs), "glsl430" (compute programs for every kernel that can use them) or
-  /// "essl300". If empty, the environment variable SK_PROFILE decides, and without it: OpenGL with the faster
-  /// kind of program if the device has 3.3, else essl300.
+  /// "glsl330" (fragment programs), "glsl430" (compute programs for every kernel that can use them), "essl300"
+  /// (OpenGL ES with fragment programs alone) or "essl310" (OpenGL ES 3.1 with compute programs, likewise). If
+  /// empty, the environment variable SK_PROFILE decides, and without it: OpenGL with the faster kind of program
+  /// if the device has 3.3, else OpenGL ES with the faster kind.
   std::string profile = {};
   /// The largest width and height of a texture: larger extents are linearised, and larger streams use several
   /// layers. If 0, the environment variable SK_TEXTURE_LIMIT decides, and without it the device's limit,
@@ -80,6 +81,7 @@ struct DeviceLimits {
   std::int32_t textureSize = 0;  ///< largest width and height of a texture
   std::int32_t textureLayers = 0;  ///< layers of an array texture: multiplies the elements of a stream
   std::int32_t drawBuffers = 0;  ///< planes that one pass may write
+  std::int32_t images = 0;  ///< planes that a compute program may write; 0 if the device has none
   std::int32_t textureUnits = 0;  ///< planes that one pass may read
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
   std::int64_t elements = 0;  ///< elements of a stream or a domain (sk/limits.hpp)
@@ -198,7 +200,7 @@ class Device {
   /// without GL.
   const std::string& driver() const;
   const std::string& shadingLanguage() const;
-  /// "glsl330", "glsl430" if compute programs were requested, "essl300", or "native".
+  /// "glsl330" or "essl300", "glsl430" or "essl310" if compute programs were requested, or "native".
   std::string_view profile() const;
   const DeviceLimits& limits() const;
   /// Bytes of limits().memory that nobody uses at present; empty if it is unknown (docs/runtime.md, Limits).

@@ -29,7 +29,7 @@ using LoopOwner = Owner<LoopState, LoopDeleter>;
 
 /// How Loop::until ends.
 struct LoopEnd {
-  /// A GPU gets this many iterations at a time. If it has OpenGL 4.3, it ends the loop by itself; otherwise the host
+  /// A GPU gets this many iterations at a time. If it has OpenGL 4.3 or ES 3.1, it ends the loop by itself; otherwise the host
   /// reads the condition after them, which waits for the device. On native devices and renderers in software, the host
   /// reads it after each iteration.
   std::int64_t every = 16;
@@ -50,7 +50,7 @@ class Loop {
   void repeat(std::int64_t times);
 
   /// Runs the calls until the only element of `done`, which they compute, is true after an iteration; `end.most`
-  /// times at the most. Returns the number of iterations that have run. On a GPU with less than OpenGL 4.3 this is a
+  /// times at the most. Returns the number of iterations that have run. On a GPU with less than OpenGL 4.3 and ES 3.1 this is a
   /// multiple of `end.every` or `end.most`: iterations go on until the host asks. Throws sk::Error as repeat() does, or if
   /// `done` has not one element, is on another device or used by no call, or if end.every < 1 or end.most < 0.
   template <StreamOf<bool> S>

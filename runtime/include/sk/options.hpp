@@ -86,7 +86,7 @@ enum class Contraction : std::uint8_t {
 enum class Target : std::uint8_t {
   Default,  ///< whichever is faster on the device
   Fragment,  ///< drawn; every GL and ES device can do it
-  Compute,  ///< dispatched; needs OpenGL 4.3
+  Compute,  ///< dispatched; needs OpenGL 4.3 or ES 3.1
   Native,  ///< compiled for the CPU; only on native devices
 };
 

@@ -359,6 +359,30 @@ struct CompensatedReduction;
 struct FoldParts;
 struct WideReduction;
 struct ExactSum;
+struct Reduction;
+
+/// A kernel of a pipeline, and its arguments: those of the pipeline, or local streams, which are the temporaries.
+struct PipelinePass {
+  const Kernel* kernel;  ///< the fold of a reduction or a scan
+  const Reduction* reduction = nullptr;
+  bool isScan = false;
+  bool isOverDomain = true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
+  std::span<const PassOperand> operands = {};  ///< one per parameter
+};
+
+struct PipelineParameter {
+  std::string_view name;  ///< as declared, for messages
+  Role role;
+};
+
+/// Kernels that are called in order, with streams between them that nothing else sees. A local stream is an output of the
+/// passes that write it, and has the shape of the pipeline's domain: that of its outputs or, if it has none, of its inputs.
+struct Pipeline {
+  std::string_view name;  ///< qualified, for messages
+  std::span<const PipelineParameter> parameters;  ///< in order of declaration
+  std::span<const std::string_view> locals;  ///< their names
+  std::span<const PipelinePass> passes;
+};
 
 /// Most elements, or partial results, that a run folds one after the other: as many terms as the digits of an exact sum
 /// have room for.

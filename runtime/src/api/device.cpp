@@ -257,7 +257,7 @@ Device Device::adopt(const DeviceOptions& given) {
     const DeviceOptions options = withEnvironment(given);
     Configuration configuration = configurationOf(options);
     std::unique_ptr<DeviceState> state =
-        openGl(options, true, configuration, gl::adoptContext(apiOf(options.profile)));
+        openGl(options, true, configuration, gl::adoptContext(apiOf(options.profile), options.profile));
     return Device(configured(std::move(state), options, std::move(configuration)));
   });
 }

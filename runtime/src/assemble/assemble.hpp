@@ -34,7 +34,7 @@ enum class Stage : std::uint8_t {
 
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
 struct Profile {
-  std::string_view name;        ///< "glsl330", "essl300", "glsl430", "webgl2"
+  std::string_view name;        ///< "glsl330", "essl300", "glsl430", "essl310", "webgl2"
   std::string_view version;     ///< the #version line
   Stage stage;
   bool es;                      ///< precision statements, ES formats and limits
@@ -46,7 +46,8 @@ struct Profile {
   /// (compiler/transforms/expand_selects.cpp). No sk::Device has such a profile.
   bool webgl = false;
   bool accurate = true;  ///< use our own functions for intrinsics that devices get wrong
-  /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have.
+  /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have, or in ES
+  /// GL_EXT_gpu_shader5 or GL_OES_gpu_shader5, and version 3.10.
   Barrier barrier = Barrier::Xor;
   /// Contraction::Exact: a kernel's own operations are computed as they are written (glsl/own_arithmetic.hpp).
   bool asWritten = true;
@@ -64,9 +65,19 @@ struct Profile {
   bool highProducts = true;
   /// Compute programs may use subgroups of 32 invocations (glsl/subgroups.hpp), and 48 KiB of shared memory in a work group.
   bool subgroups = false;
+  /// ES: compute programs write images of every format (GL_NV_image_formats), not only of those of ES 3.1 (mayStore()).
+  bool storesAllFormats = false;
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
+
+/// The format of the image that a compute program of ES declares for a field's plane, as a layout qualifier: "rgba32f".
+std::string imageFormat(const program::Field& field);
+/// Whether compute programs of the profile may write images of a format. ES 3.1 has formats of four components, and of one
+/// component of 32 bits.
+bool mayStore(const Profile& profile, std::string_view format);
+/// The same for all planes of elements that do not share texels.
+bool mayStore(const Profile& profile, const program::Element& element);
 
 /// The layout of the output's texels, which determines how sk_index() follows from a texel. drawnTexels() of
 /// region_layout.hpp says what to draw.

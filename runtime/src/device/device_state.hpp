@@ -155,6 +155,11 @@ class DeviceState {
   virtual std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) = 0;
   /// Null if loops need no more than their calls one after the other.
   virtual std::unique_ptr<LoopRunner> makeLoopRunner() { return nullptr; }
+  /// Runs recorded calls once, in any way that has the effect of one after the other, but for the elements of `locals`: streams that
+  /// nothing else uses. Returns false, without any effect, if that saves nothing.
+  virtual bool runTogether(LoopState& /*calls*/, std::span<StreamState* const> /*locals*/) { return false; }
+  /// Whether it may, for streams of so many elements: recording calls takes longer than checking them.
+  virtual bool mayRunTogether(std::int64_t /*elements*/) const { return false; }
   /// Whether argument `i` of a checked call, a region with strides, needs a temporary stream in its place
   /// (call/placed.hpp).
   virtual bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -220,6 +225,8 @@ class DeviceState {
   LoopState* recording = nullptr;  ///< records calls instead of running them; or null
   std::vector<LoopState*> loops;  ///< that use the device's streams
   PendingScalars pendingScalars;
+  std::vector<detail::StreamOwner>
+      keptLocals;  ///< of the last pipeline, for the next one; empty on devices that keep memory themselves
 
   StreamState* firstStream() const { return firstStream_; }
 

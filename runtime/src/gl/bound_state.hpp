@@ -24,9 +24,12 @@ inline constexpr int maxImageUnits = 16;
 
 class BoundState {
  public:
-  BoundState() = default;
+  /// `isEs`: the context is one of OpenGL ES.
+  explicit BoundState(bool isEs = false) : isEs_(isEs) {}
   BoundState(const BoundState&) = delete;
   BoundState& operator=(const BoundState&) = delete;
+
+  bool isEs() const { return isEs_; }
 
   void program(GLuint name) {
     note({.kind = Command::Kind::Program, .name = name});
@@ -99,7 +102,7 @@ class BoundState {
     use();
     reselectStorage();
   }
-  /// Binds a texture for changes by glTexImage2D and similar functions: on unit 0, which becomes the active
+  /// Binds a texture for changes by glTexSubImage2D and similar functions: on unit 0, which becomes the active
   /// one.
   void textureToChange(GLuint name, bool isArray) {
     activateUnit(0);
@@ -206,6 +209,7 @@ class BoundState {
     return units;
   }
 
+  const bool isEs_;
   CommandLog* log_ = nullptr;
   std::vector<CommandLog*> kept_;
   GLuint program_ = unknown;

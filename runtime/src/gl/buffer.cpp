@@ -2,6 +2,7 @@
 #include "gl/buffer.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,16 @@ namespace sk::gl {
 void deleteBuffer(BoundState& bound, GLuint name) {
   glDeleteBuffers(1, &name);
   bound.forgetStorage(name);
+}
+
+// ES has neither glGetBufferSubData nor glClearBufferSubData.
+void readBuffer(const BoundState& bound, GLenum target, std::span<std::byte> bytes) {
+  const auto size = static_cast<GLsizeiptr>(bytes.size());
+  if (!bound.isEs()) return glGetBufferSubData(target, 0, size, bytes.data());
+  const void* const mapped = glMapBufferRange(target, 0, size, GL_MAP_READ_BIT);
+  if (mapped == nullptr) return;
+  std::memcpy(bytes.data(), mapped, bytes.size());
+  glUnmapBuffer(target);
 }
 
 bool StorageBuffer::reserve(BoundState& bound, std::size_t bytes) {
@@ -56,16 +67,24 @@ bool StorageBuffer::bind(BoundState& bound, std::size_t bytes) {
   return true;
 }
 
-void StorageBuffer::clear(std::size_t bytes) {
+void StorageBuffer::clear(const BoundState& bound, std::size_t bytes) {
+  const auto size = static_cast<GLsizeiptr>(bytes);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-  glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
-                       GL_UNSIGNED_INT, nullptr);
+  if (!bound.isEs()) {
+    return glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, size, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                nullptr);
+  }
+  void* const mapped =
+      glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, size, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
+  if (mapped == nullptr) return;
+  std::memset(mapped, 0, bytes);
+  glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 }
 
 void StorageBuffer::read(BoundState& bound, std::span<std::byte> values) const {
   bound.storage(name_.get());
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(values.size()), values.data());
+  readBuffer(bound, GL_SHADER_STORAGE_BUFFER, values);
 }
 
 void StorageBuffer::trim(std::size_t keptBytes) {

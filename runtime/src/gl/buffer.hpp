@@ -15,6 +15,9 @@ namespace sk::gl {
 
 void deleteBuffer(BoundState& bound, GLuint name);
 
+/// Reads the first bytes of the buffer that is bound to `target`. If the driver fails, it reports an error.
+void readBuffer(const BoundState& bound, GLenum target, std::span<std::byte> bytes);
+
 /// A buffer that programs read and write, at binding 0. It is created on first use and grows when needed. The context must
 /// be current in all calls.
 class StorageBuffer {
@@ -38,7 +41,7 @@ class StorageBuffer {
   /// Both.
   bool bind(BoundState& bound, std::size_t bytes);
   /// Sets the first bytes of the bound buffer, a multiple of 4, to 0.
-  static void clear(std::size_t bytes);
+  static void clear(const BoundState& bound, std::size_t bytes);
   /// Reads what programs have written to its beginning; waits for them.
   void read(BoundState& bound, std::span<std::byte> values) const;
   /// What the host sees. What a program has written is there once a fence after finishMapped() is reached; what the host has

@@ -47,20 +47,44 @@ bool hasFullSubgroups() {
          integerOf(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) >= 48 << 10;
 }
 
+/// The limits of compute programs, which GL and ES guarantee to a different extent.
+void readComputeLimits(Capabilities& found) {
+  found.outputResources = integerOf(GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES);
+  found.images =
+      std::min({integerOf(GL_MAX_COMPUTE_IMAGE_UNIFORMS), integerOf(GL_MAX_IMAGE_UNITS), found.drawBuffers});
+  found.uniformComponents = std::min(found.uniformComponents, integerOf(GL_MAX_COMPUTE_UNIFORM_COMPONENTS));
+  GLint64 storageBytes = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBytes);
+  found.storageBytes = storageBytes;
+}
+
+/// Compute programs of ES 3.1. They may write fewer planes than fragment programs, and images of fewer formats; those who run
+/// them check that.
+void readComputeOfEs(Capabilities& found) {
+  constexpr int invocations = 256, sharedBytes = 32 << 10;
+  found.hasCompute = integerOf(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS) >= invocations &&
+                     integerOf(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) >= sharedBytes &&
+                     integerOf(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) >= found.textureUnits;
+  if (!found.hasCompute) return;
+  readComputeLimits(found);
+  found.images = std::min(found.images, found.outputResources);
+  found.storesAllFormats = epoxy_has_gl_extension("GL_NV_image_formats");
+  found.hasImageAtomics = epoxy_has_gl_extension("GL_OES_shader_image_atomic");
+}
+
 /// Whether compute programs can replace fragment programs of the same limits; uniform limits are then those
 /// of both.
 void readCompute(Capabilities& found) {
+  if (found.api == Api::Es && found.version >= 31) readComputeOfEs(found);
   if (found.api != Api::Gl || found.version < 43) return;
   found.hasCompute = integerOf(GL_MAX_COMPUTE_IMAGE_UNIFORMS) >= found.drawBuffers &&
                      integerOf(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) >= found.textureUnits;
-  if (found.hasCompute) {
-    found.uniformComponents = std::min(found.uniformComponents, integerOf(GL_MAX_COMPUTE_UNIFORM_COMPONENTS));
-    GLint64 storageBytes = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBytes);
-    found.storageBytes = storageBytes;
-    found.hasSubgroups = hasFullSubgroups();
-    found.mapsStorage = found.version >= 44 || epoxy_has_gl_extension("GL_ARB_buffer_storage");
-  }
+  if (!found.hasCompute) return;
+  readComputeLimits(found);
+  found.images = found.drawBuffers;
+  found.storesAllFormats = found.hasImageAtomics = true;
+  found.hasSubgroups = hasFullSubgroups();
+  found.mapsStorage = found.version >= 44 || epoxy_has_gl_extension("GL_ARB_buffer_storage");
 }
 
 /// Fragment programs of GLSL 3.30, and of ESSL 3.10.
@@ -110,7 +134,10 @@ Capabilities readCapabilities() {
   }
   found.blendsFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_EXT_float_blend");
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
-  found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
+  found.hasPrecise = found.api == Api::Gl
+                         ? epoxy_has_gl_extension("GL_ARB_gpu_shader5")
+                         : found.version >= 31 && (epoxy_has_gl_extension("GL_EXT_gpu_shader5") ||
+                                                   epoxy_has_gl_extension("GL_OES_gpu_shader5"));
   found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
   found.hasClipControl = found.api == Api::Gl
                              ? found.version >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control")

@@ -26,9 +26,13 @@ struct Capabilities {
   bool isSoftware = false;  ///< kind is Software
   bool blendsFloats = false;  ///< can blend 32-bit floats
   bool hasDoubles = false;  ///< GLSL has double (GL_ARB_gpu_shader_fp64)
-  bool hasPrecise = false;  ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
+  bool hasPrecise = false;  ///< GLSL 3.30, or ESSL 3.10, has `precise` (GL_ARB_gpu_shader5, or the like)
   bool filtersFloats = false;  ///< can filter 32-bit floats linearly
-  bool hasCompute = false;  ///< has compute programs of GLSL 4.30, within the limits below
+  /// Has compute programs of GLSL 4.30 or ESSL 3.10, within the limits below, whose work groups of 256 invocations have 32 KiB of
+  /// shared memory.
+  bool hasCompute = false;
+  bool storesAllFormats = false;  ///< compute programs write images of all formats
+  bool hasImageAtomics = false;  ///< compute programs have atomic operations on images
   bool storesFromDraws = false;  ///< fragment programs write buffers at bindings 0 and 1
   /// Compute programs have subgroups of 32 invocations with votes, sums and shuffles, and 48 KiB of shared memory in a work group.
   bool hasSubgroups = false;
@@ -46,6 +50,8 @@ struct Capabilities {
   int drawBuffers = 0;
   int textureUnits = 0;  ///< at most maxTextureUnits
   int uniformComponents = 0;  ///< components of a program's uniforms
+  int images = 0;  ///< images that a compute program writes; at most drawBuffers
+  int outputResources = 0;  ///< images and storage buffers of a compute program, together
   std::int64_t storageBytes = 0;  ///< of a buffer that compute programs write
 };
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gl/loop_gate.hpp"
 
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "gl/buffer.hpp"
 #include "gl/commands.hpp"
 
 namespace sk::gl {
@@ -16,8 +20,8 @@ struct GateHead {
 };
 constexpr GLsizeiptr gateStateBytes = 2 * sizeof(GLuint);
 
-constexpr const char* gateText = R"(#version 430
-layout(local_size_x = 1) in;
+constexpr std::string_view glHead = "#version 430\n", esHead = "#version 310 es\nprecision highp int;\n";
+constexpr std::string_view gateText = R"(layout(local_size_x = 1) in;
 layout(std430, binding = 0) buffer Gate {
   uint is_running, ran;
   uint corners, instances, first, base;
@@ -46,7 +50,9 @@ GLint boundBuffer(GLenum name) {
 
 bool LoopGate::build(BoundState& bound, std::string& log) {
   if (program_) return true;
-  Program program = Program::build(bound, {{}, gateText}, log);
+  std::string text(bound.isEs() ? esHead : glHead);
+  text += gateText;
+  Program program = Program::build(bound, {{}, std::move(text)}, log);
   if (!program) return false;
   bound.program(program.name());
   program.setSampler("condition", 0);
@@ -120,12 +126,12 @@ void LoopGate::ask(BoundState& bound) {
   answer.fence = Fence::insert(bound.deletions);
 }
 
-LoopGate::State LoopGate::answer(BoundState&, std::size_t age) const {
+LoopGate::State LoopGate::answer(BoundState& bound, std::size_t age) const {
   const Answer& answer = answers_[(asked_ - 1 - age) % answers_.size()];
   if (answer.fence) answer.fence.wait();
   std::array<GLuint, 2> state{};
   glBindBuffer(GL_COPY_WRITE_BUFFER, answer.buffer.get());
-  glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, gateStateBytes, state.data());
+  readBuffer(bound, GL_COPY_WRITE_BUFFER, std::as_writable_bytes(std::span(state)));
   return {state[0] == 0, state[1]};
 }
 

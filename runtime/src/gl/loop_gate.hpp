@@ -2,7 +2,7 @@
 //
 // Ends a loop on the device: a buffer with the counts of the loop's draws and dispatches, and a small program that sets
 // all of them to zero once a condition is true. Commands that are queued behind it then do nothing. Requires compute
-// programs, and thus OpenGL 4.3.
+// programs, and thus OpenGL 4.3 or ES 3.1.
 #pragma once
 
 #include <array>

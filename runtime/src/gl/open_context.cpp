@@ -247,7 +247,7 @@ std::optional<OpenedContext> findGpu() {
   return found;
 }
 
-OpenedContext adoptContext(std::optional<Api> api) {
+OpenedContext adoptContext(std::optional<Api> api, std::string_view profile) {
   if (isForked()) failAsForked();
   std::optional<Context> context = Context::current();
   if (!context) {
@@ -257,10 +257,9 @@ OpenedContext adoptContext(std::optional<Api> api) {
   OpenedContext opened{std::move(*context), readCapabilities()};
   const Api found = opened.capabilities.api;
   if (api.value_or(found) != found) {
-    throw Error(
-        fmt::format("the context to adopt is one of {}, which profile {} does not run on",
-                    found == Api::Gl ? "OpenGL" : "OpenGL ES", found == Api::Gl ? "essl300" : "glsl330"),
-        Error::Kind::Device);
+    throw Error(fmt::format("the context to adopt is one of {}, which profile {} does not run on",
+                            found == Api::Gl ? "OpenGL" : "OpenGL ES", profile),
+                Error::Kind::Device);
   }
   if (const std::string why = whyUnfitSaved(opened.capabilities); !why.empty()) {
     throw Error("the current context cannot be adopted: " + why, Error::Kind::Device);

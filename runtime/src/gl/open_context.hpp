@@ -76,6 +76,6 @@ std::optional<OpenedContext> findGpu();
 
 /// The context that is current on this thread; throws sk::Error if it is not sufficient. Restores the
 /// application's state.
-OpenedContext adoptContext(std::optional<Api> api);
+OpenedContext adoptContext(std::optional<Api> api, std::string_view profile);
 
 }  // namespace sk::gl

@@ -27,17 +27,30 @@ Texture::Texture(BoundState& bound, const Format& format, const TextureSize& siz
     : name_(bound.deletions, [] { return generated(glGenTextures); }), format_(&format), size_(size) {
   bound.textureToChange(name(), isLayered());
   const GLenum target = isLayered() ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
-  const auto internalFormat = static_cast<GLint>(format.internalFormat);
   setNearest(target);
   bound.errors.setAside();
-  if (isLayered()) {
-    glTexImage3D(target, 0, internalFormat, size.width, size.height, size.layers, 0, format.tight.format,
-                 format.tight.type, nullptr);
-  } else {
-    glTexImage2D(target, 0, internalFormat, size.width, size.height, 0, format.tight.format,
-                 format.tight.type, nullptr);
-  }
+  bound.isEs() ? takeImmutable(target) : take(target);
   if (bound.errors.takeNew() != GL_NO_ERROR) name_ = {};
+}
+
+void Texture::take(GLenum target) const {
+  const auto internalFormat = static_cast<GLint>(format_->internalFormat);
+  const Transfer& tight = format_->tight;
+  if (isLayered()) {
+    glTexImage3D(target, 0, internalFormat, size_.width, size_.height, size_.layers, 0, tight.format,
+                 tight.type, nullptr);
+  } else {
+    glTexImage2D(target, 0, internalFormat, size_.width, size_.height, 0, tight.format, tight.type, nullptr);
+  }
+}
+
+/// In ES, programs write images of no other textures.
+void Texture::takeImmutable(GLenum target) const {
+  if (isLayered()) {
+    glTexStorage3D(target, 1, format_->internalFormat, size_.width, size_.height, size_.layers);
+  } else {
+    glTexStorage2D(target, 1, format_->internalFormat, size_.width, size_.height);
+  }
 }
 
 void Texture::write(BoundState& bound, const Texels& rect, GLint layer, const void* texels) {

@@ -57,6 +57,10 @@ class Texture {
   std::size_t bytes() const;
 
  private:
+  /// Takes memory, on the bound texture.
+  void take(GLenum target) const;
+  void takeImmutable(GLenum target) const;
+
   ObjectName<deleteTexture> name_;
   const Format* format_ = nullptr;
   TextureSize size_;

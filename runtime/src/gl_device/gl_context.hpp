@@ -24,7 +24,10 @@ class GlContext {
  public:
   /// `isShared`: the application draws in the device's own context. The capabilities must outlive this object.
   GlContext(gl::Context&& context, const gl::Capabilities& capabilities, bool isShared)
-      : context_(std::move(context)), capabilities_(capabilities), isShared_(isShared) {}
+      : context_(std::move(context)),
+        capabilities_(capabilities),
+        isShared_(isShared),
+        bound_(capabilities.api == gl::Api::Es) {}
   /// Deletes the objects whose owners have been destroyed. If the context cannot be made current, they are deleted with it.
   ~GlContext();
 

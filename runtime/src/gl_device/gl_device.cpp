@@ -23,8 +23,21 @@
 
 namespace sk {
 
+namespace {
+
+/// What a device uses of its context. With the profile essl300, devices are like those of OpenGL ES 3.0; with guaranteed limits,
+/// compute programs of ES write images of the formats that every device of 3.1 has.
+gl::Capabilities usedOf(gl::Capabilities&& found, const DeviceChoices& choices) {
+  if (found.api != gl::Api::Es) return std::move(found);
+  if (choices.target == Target::Fragment) found.hasCompute = found.hasPrecise = false;
+  if (choices.guaranteedLimits) found.storesAllFormats = false;
+  return std::move(found);
+}
+
+}  // namespace
+
 GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
-    : capabilities(std::move(opened.capabilities)),
+    : capabilities(usedOf(std::move(opened.capabilities), choices)),
       traits(gl::traitsOf(capabilities.kind, choices.traits)),
       target(choices.target),
       scanPatience(choices.scanPatience),
@@ -37,13 +50,19 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   }
   limits.elements = mostElements;
   limits.drawBuffers = capabilities.drawBuffers;
+  limits.images = capabilities.hasCompute ? capabilities.images : 0;
   limits.textureUnits = capabilities.textureUnits;
   limits.uniformComponents = capabilities.uniformComponents;
   if (choices.guaranteedLimits) {
-    limits.drawBuffers = programs_.profile().drawBuffers;
-    limits.textureUnits = programs_.profile().textureUnits;
-    limits.uniformComponents = programs_.profile().uniformComponents;
+    const assemble::Profile& profile =
+        target == Target::Compute ? programs_.computeProfile() : programs_.profile();
+    limits.drawBuffers = profile.drawBuffers;
+    limits.images = std::min(limits.images, programs_.computeProfile().drawBuffers);
+    limits.textureUnits = profile.textureUnits;
+    limits.uniformComponents = profile.uniformComponents;
   }
+  // plans have passes that are dispatched
+  if (target == Target::Compute) limits.drawBuffers = std::min(limits.drawBuffers, limits.images);
   const gl::CurrentScope current(context_.handle());
   limits.memory = memory_.info().whole;
   if (!context_.isGuest()) gl::setPassState(capabilities);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/gl_programs.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,17 +34,24 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   // The host of a virtual machine may render in software.
   profile.checksLoops = capabilities.storesFromDraws &&
                         (capabilities.isSoftware || capabilities.kind == gl::RendererKind::Virtual);
-  if (profile.checksLoops && profile.es) profile.version = "#version 310 es";
+  const bool needsEs31 = profile.checksLoops || capabilities.hasPrecise;
+  if (profile.es && needsEs31) profile.version = "#version 310 es";
   profile.subgroups = profile.stage == assemble::Stage::Compute && capabilities.hasSubgroups;
+  profile.storesAllFormats = capabilities.storesAllFormats;
   return profile;
 }
+
+constexpr std::string_view needOfCompute = "OpenGL 4.3 or ES 3.1";
 
 /// The requested barrier, else the strongest one that the language has.
 Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
   if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
     throw Error(
         fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
-                    capabilities.renderer, capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"),
+                    capabilities.renderer,
+                    capabilities.api == gl::Api::Gl ? "GLSL 3.30"
+                    : capabilities.hasCompute       ? "ESSL 3.10"
+                                                    : "ESSL 3.00"),
         Error::Kind::Device);
   }
   return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
@@ -55,17 +63,20 @@ GlPrograms::GlPrograms(GlDevice& device, const DeviceChoices& choices)
     : device_(device),
       profile_(profileOf(device.capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", device.capabilities,
                          device.traits, choices.pairs)),
-      computeProfile_(profileOf("glsl430", device.capabilities, device.traits, choices.pairs)),
+      computeProfile_(profileOf(device.capabilities.api == gl::Api::Gl ? "glsl430" : "essl310",
+                                device.capabilities, device.traits, choices.pairs)),
       barrier_(barrierOf(device.capabilities, choices)),
       binaries_(device.cache, device.capabilities,
                 driverKey(device.capabilities.renderer, device.capabilities.driver, profileName())) {
   if (device.target == Target::Compute && !device.capabilities.hasCompute) {
     throw Error(
-        fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
-                    "SK_PROFILE) out",
-                    device.capabilities.renderer),
+        fmt::format(
+            "'{}' runs no compute programs, which take {}; leave profile {} (option or SK_PROFILE) out",
+            device.capabilities.renderer, needOfCompute, computeProfile_.name),
         Error::Kind::Device);
   }
+  for (const gl::Format& format : gl::formats())
+    stored_[format.index] = assemble::mayStore(computeProfile_, gl::lowerCase(format.name));
   if (choices.barrier) {
     arithmetic_ = {
         .exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier, .asWritten = false};
@@ -138,16 +149,16 @@ std::vector<TargetTrial> GlPrograms::trialTargets() {
 }
 
 void GlPrograms::selectDrawn(const program::Kernel& kernel, const CallOptions& options) {
-  if (!kernel.drawn || options.target == Target::Compute) {
-    fail(Error::Kind::Device, kernel,
-         "compute programs write its outputs only to streams that need no texture with layers, that fit the "
-         "device's {} "
-         "images, and of which no two are regions of one stream; compile it with skc "
-         "--target=fragment,compute and call "
-         "it without Target::Compute",
-         device_.limits.drawBuffers);
-  }
+  if (!kernel.drawn || options.target == Target::Compute) failForImages(kernel);
   select(options, assemble::Stage::Fragment);
+}
+
+void GlPrograms::failForImages(const program::Kernel& kernel) const {
+  fail(Error::Kind::Device, kernel,
+       "compute programs write its outputs only to streams that need no texture with layers, that fit the "
+       "device's {} images{}, and of which no two are regions of one stream; compile it with skc "
+       "--target=fragment,compute and call it without Target::Compute",
+       device_.limits.images, device_.capabilities.storesAllFormats ? "" : " and their formats");
 }
 
 void GlPrograms::select(const CallOptions& options, assemble::Stage stage) {
@@ -161,18 +172,47 @@ void GlPrograms::select(const CallOptions& options, assemble::Stage stage) {
   if (selected_ != nullptr && key == selectedKey_) {
     return;
   }
-  auto found = caches_.find(key);
-  if (found == caches_.end()) {
-    assemble::Profile cacheProfile = stage == assemble::Stage::Compute ? computeProfile_ : profile_;
-    cacheProfile.accurate = key.accurate;
-    cacheProfile.doubles = key.doubles;
-    cacheProfile.barrier = key.barrier;
-    cacheProfile.asWritten = key.asWritten;
-    cacheProfile.tables = key.tables;
-    found = caches_.try_emplace(key, device_, cacheProfile).first;
-  }
-  selected_ = &found->second;
+  selected_ = &cacheOf(key);
   selectedKey_ = key;
+}
+
+ProgramCache& GlPrograms::cacheOf(const ProgramCacheKey& key) {
+  const auto found = caches_.find(key);
+  if (found != caches_.end()) return found->second;
+  assemble::Profile cacheProfile = key.stage == assemble::Stage::Compute ? computeProfile_ : profile_;
+  cacheProfile.accurate = key.accurate;
+  cacheProfile.doubles = key.doubles;
+  cacheProfile.barrier = key.barrier;
+  cacheProfile.asWritten = key.asWritten;
+  cacheProfile.tables = key.tables;
+  return caches_.try_emplace(key, device_, cacheProfile).first->second;
+}
+
+ProgramCache& GlPrograms::selectedFor(const program::Kernel& kernel, std::span<RenderTarget* const> planes) {
+  return selectedIf(!areDispatched() || mayStore(planes), kernel);
+}
+
+ProgramCache& GlPrograms::selectedFor(const program::Kernel& kernel, const gl::Format& format) {
+  return selectedIf(mayStore(format), kernel);
+}
+
+ProgramCache& GlPrograms::selectedIf(bool mayStore, const program::Kernel& kernel) {
+  if (mayStore || !areDispatched()) return *selected_;
+  if (!kernel.drawn) failForImages(kernel);
+  ProgramCacheKey key = selectedKey_;
+  key.stage = assemble::Stage::Fragment;
+  return cacheOf(key);
+}
+
+bool GlPrograms::mayStore(const program::Element& element) const {
+  return std::ranges::all_of(element.fields,
+                             [&](const program::Field& field) { return mayStore(gl::formatOf(field)); });
+}
+
+bool GlPrograms::mayStore(std::span<RenderTarget* const> planes) const {
+  return planes.size() <= static_cast<std::size_t>(device_.limits.images) &&
+         std::ranges::all_of(planes,
+                             [&](const RenderTarget* plane) { return mayStore(plane->texture.format()); });
 }
 
 GLuint GlPrograms::textureOf(const FunctionTable& table) {
@@ -233,8 +273,8 @@ void GlPrograms::checkTarget(const program::Kernel& kernel, const CallOptions& o
   const bool mustDispatch = requested == Target::Compute || !kernel.drawn;
   const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
   if (mustDispatch && !device_.capabilities.hasCompute) {
-    fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}",
-         device_.name(), wayOut);
+    fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take {}; {}", device_.name(),
+         needOfCompute, wayOut);
   }
   if (mustDispatch && !kernel.dispatched) {
     fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);

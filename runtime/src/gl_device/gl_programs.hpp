@@ -82,7 +82,18 @@ class GlPrograms {
   void select(const CallOptions& options, assemble::Stage stage);
   /// Selects fragment programs for a call that compute programs cannot run. Throws sk::Error if the kernel has none.
   void selectDrawn(const program::Kernel& kernel, const CallOptions& options);
+  /// Throws sk::Error for a call that must be dispatched, and writes what compute programs cannot write.
+  [[noreturn]] void failForImages(const program::Kernel& kernel) const;
   ProgramCache& selected() { return *selected_; }
+  /// The programs of a pass over elements that writes these planes: the selected ones, or fragment programs with the same options if
+  /// those are compute programs and cannot write the planes. Throws sk::Error if the kernel has no fragment programs.
+  ProgramCache& selectedFor(const program::Kernel& kernel, std::span<RenderTarget* const> planes);
+  /// The same for a pass that writes a plane of this format.
+  ProgramCache& selectedFor(const program::Kernel& kernel, const gl::Format& format);
+  /// Whether compute programs write images of a format, and of all formats of an element's planes.
+  bool mayStore(const gl::Format& format) const { return stored_[format.index]; }
+  bool mayStore(const program::Element& element) const;
+  bool mayStore(std::span<RenderTarget* const> planes) const;
   /// Whether the selected programs are compute programs.
   bool areDispatched() const { return selected_->stage() == assemble::Stage::Compute; }
 
@@ -115,6 +126,9 @@ class GlPrograms {
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
   void checkTarget(const program::Kernel& kernel, const CallOptions& options) const;
   void needExactSums(const program::Kernel& kernel);
+  /// The cache with this key, which is made on first use.
+  ProgramCache& cacheOf(const ProgramCacheKey& key);
+  ProgramCache& selectedIf(bool mayStore, const program::Kernel& kernel);
 
   GlDevice& device_;
   const assemble::Profile profile_, computeProfile_;
@@ -127,6 +141,7 @@ class GlPrograms {
   StagingPrograms ofStaging_{*this};
   MadeKernels scalarKernels_{*this};
   MadeKernels mergeKernels_{*this};
+  std::array<bool, gl::formatCount> stored_{};  ///< mayStore(), by Format::index
   MadeKernels fusedKernels_{*this};
   TileTrials tileTrials_{device_};
   std::map<ProgramCacheKey, ProgramCache> caches_;

@@ -246,6 +246,14 @@ TEST_CASE("stencils that share texels in work groups") {
   }
 }
 
+TEST_CASE("stencils that share texels in work groups of OpenGL ES") {
+  const DeviceChoices choices{.target = Target::Compute, .traits = {.sharesTexels = true}};
+  GlDevice device(gl::openContext({"software", gl::Api::Es}), choices);
+  const Weigh weigh(Boundary::Mirror, 2);
+  for (const Shape& shape : {Shape{5, 8}, Shape{33, 100}})
+    CHECK(weighed(device, weigh.kernel, shape) == weighedOnHost(Boundary::Mirror, 2, shape));
+}
+
 TEST_CASE("stencils over parts of a whole that share texels in work groups") {
   const DeviceChoices choices{.target = Target::Compute, .traits = {.sharesTexels = true}};
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);

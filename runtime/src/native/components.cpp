@@ -300,6 +300,11 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
   frame_.arguments = arguments_.data();
 }
 
+CodeFrame::CodeFrame(const CodeFrame& other, std::pmr::memory_resource* memory)
+    : arguments_(other.arguments_, memory), zeroArrays_(memory), frame_(other.frame_) {
+  frame_.arguments = arguments_.data();
+}
+
 void CodeFrame::redirect(std::size_t parameter, const native::Operand& operand) {
   arguments_[parameter] = argumentOf(operand);
 }

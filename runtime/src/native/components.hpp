@@ -121,6 +121,8 @@ class CodeFrame {
  public:
   CodeFrame(const program::Kernel& kernel, const native::Call& call,
             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  /// A copy, whose parameters can be redirected on their own. The other frame must outlive it.
+  CodeFrame(const CodeFrame& other, std::pmr::memory_resource* memory);
   CodeFrame(const CodeFrame&) = delete;
   CodeFrame& operator=(const CodeFrame&) = delete;
 

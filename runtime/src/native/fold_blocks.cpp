@@ -6,12 +6,15 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "native/fold_pieces.hpp"
 #include "native/fold_program.hpp"
 #include "native/memory.hpp"
+#include "native/per_worker.hpp"
 #include "native/piece_folder.hpp"
+#include "native/whole_pieces.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {
@@ -245,9 +248,15 @@ void foldBlocks(const FoldProgram& program, const Extents& domain, const Extents
   const std::int64_t ofBlock = pieces.ofBlock();
   const std::size_t bytes = program.shape.bytes();
   std::vector<std::byte> states(ofBlock == 1 ? 0 : static_cast<std::size_t>(pieces.count()) * bytes);
-  native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) {
-    PieceFolder folder(program, pieces);
+  const std::optional<WholePieces> whole = ofBlock == 1 ? std::nullopt : WholePieces::of(program, pieces);
+  PerWorker<PieceFolder> folders(native::threadsFor(pieces.count(), pieces.elementsOfOne()));
+  native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range, int worker) {
     for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+      if (whole && piece < whole->count()) {
+        whole->fold(piece, states.data() + static_cast<std::size_t>(piece) * bytes);
+        continue;
+      }
+      PieceFolder& folder = folders.of(worker, program, pieces);
       const Extents at = pieces.blockAt(piece / ofBlock);
       const StateColumns& result = folder.fold(at, piece % ofBlock);
       if (ofBlock == 1) {

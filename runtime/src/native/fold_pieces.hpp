@@ -40,6 +40,8 @@ class BlockPieces {
     return at;
   }
 
+  /// The number of pieces with `most` elements of one row, if the domain is that row: these come first. Else 0.
+  std::int64_t wholeInRow() const { return count() == perRow_ ? block_[0] / most : 0; }
   /// Calls visit(first, count) for the rows of a piece.
   template <class Visit>
   void forEachRow(const native::Extents& block, std::int64_t piece, Visit&& visit) const {

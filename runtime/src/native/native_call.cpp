@@ -18,6 +18,7 @@
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
 #include "native/fold_code.hpp"
+#include "native/local_tiles.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
 #include "native/native_stream.hpp"
@@ -229,6 +230,10 @@ bool NativeDevice::needsDense(const Kernel& kernel, std::span<const Argument> ar
 }
 
 std::unique_ptr<LoopRunner> NativeDevice::makeLoopRunner() { return makeTiledLoop(*this); }
+
+bool NativeDevice::runTogether(LoopState& calls, std::span<StreamState* const> locals) {
+  return runInLocalTiles(*this, calls, locals);
+}
 
 std::unique_ptr<RecordedCall> NativeDevice::prepare(const ResolvedCall& call) {
   checkTarget(call.kernel, call.options.target);

@@ -40,6 +40,7 @@ NativeDevice::NativeDevice(RealType real)
   limits = {.textureSize = unlimited,
             .textureLayers = 1,
             .drawBuffers = unlimited,
+            .images = unlimited,
             .textureUnits = unlimited,
             .uniformComponents = unlimited,
             .elements = std::numeric_limits<std::int64_t>::max(),

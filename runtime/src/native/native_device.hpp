@@ -48,6 +48,8 @@ class NativeDevice final : public DeviceState {
   std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
+  bool mayRunTogether(std::int64_t elements) const override { return elements >= std::int64_t{1} << 14; }
+  bool runTogether(LoopState& calls, std::span<StreamState* const> locals) override;
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion&) override { return false; }
   void reduce(const ResolvedReduction& call) override;

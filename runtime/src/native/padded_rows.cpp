@@ -3,21 +3,19 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "native/components.hpp"
+#include "native/gather_copies.hpp"
 #include "native/scalars.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {
 
-using native::Extents;
-
 namespace {
 
 constexpr std::int64_t padding = 2 * cacheLine;
-
-std::int64_t rowsOf(const native::Operand& from) { return from.extent[1] * from.extent[2] * from.extent[3]; }
 
 /// True if the rows of some scalar's array share few sets of a cache, and do not all fit there.
 bool hasConflicts(const native::Operand& from, const std::vector<std::size_t>& bytes) {
@@ -29,25 +27,22 @@ bool hasConflicts(const native::Operand& from, const std::vector<std::size_t>& b
   });
 }
 
-/// True if copying takes little time beside the call: many blocks of rows read the gather, and it is not much larger than
-/// the domain, whose elements are all computed.
-bool pays(const native::Operand& from, const Extents& domain, std::int64_t rows) {
-  constexpr std::int64_t fewestBlocks = 16;
-  constexpr std::int64_t mostPerElement = 4;
-  const std::int64_t elements = domain[0] * domain[1] * domain[2] * domain[3];
-  return domain[1] >= fewestBlocks * rows && from.extent[0] * rowsOf(from) <= mostPerElement * elements;
-}
-
 }  // namespace
 
-PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows) {
+PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows,
+                       const ColumnPanels& panels) {
   for (std::size_t i = 0; i < std::min<std::size_t>(call.operands.size(), 64); ++i) {
     const native::Operand& from = call.operands[i];
-    if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held) continue;
+    // the slots of neighbours lie in the stream itself
+    const bool hasSlots = std::ranges::any_of(std::span(kernel.code->slots, kernel.code->slotCount),
+                                              [&](const native::Slot& slot) { return slot.parameter == i; });
+    if (hasSlots || (kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held ||
+        panels.has(i))
+      continue;
     std::vector<std::size_t> bytes;
     forEachScalar(*kernel.parameters[i].element, RealType::Float,
                   [&](std::size_t, std::size_t size, auto) { bytes.push_back(size); });
-    if (!hasConflicts(from, bytes) || !pays(from, call.domain, rows)) continue;
+    if (!hasConflicts(from, bytes) || !paysToCopy(from, from.extent[0], call.domain, rows)) continue;
     const auto largest = static_cast<std::int64_t>(std::ranges::max(bytes));
     const std::int64_t pitch = from.extent[0] + padding / largest;
     const std::int64_t plane = pitch * from.extent[1];
@@ -80,11 +75,7 @@ void PaddedRows::copyRows(const Copy& copy, std::size_t scalar) {
   std::byte* const target = copy.memory[scalar].get();
   native::inParallel(rowsOf(from), from.extent[0], native::Deal::Evenly, [&](native::Range range) {
     for (std::int64_t row = range.begin; row < range.end; ++row) {
-      const std::int64_t y = row % from.extent[1];
-      const std::int64_t z = row / from.extent[1] % from.extent[2];
-      const std::int64_t w = row / from.extent[1] / from.extent[2];
-      const std::int64_t first = from.first + y * from.stride[1] + z * from.stride[2] + w * from.stride[3];
-      std::memcpy(target + row * copy.stride[1] * bytes, source + first * bytes,
+      std::memcpy(target + row * copy.stride[1] * bytes, source + firstOfRow(from, row) * bytes,
                   static_cast<std::size_t>(from.extent[0] * bytes));
     }
   });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "native/call.hpp"
+#include "native/column_panels.hpp"
 #include "native/memory.hpp"
 #include "native/slot_arrays.hpp"
 #include "sk/program.hpp"
@@ -17,11 +18,12 @@
 namespace sk {
 
 /// The copies for one call of a RunRows entry: those gathers that all of its rows read (Code::sharedGathers), if
-/// enough blocks of rows read them to make up for the copy.
+/// enough blocks of rows read them to make up for the copy, and which have no panels.
 class PaddedRows {
  public:
   /// `rows` is the number of rows that the entry computes together. What the operands point to must outlive this.
-  PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows);
+  PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows,
+             const ColumnPanels& panels);
 
   bool isEmpty() const { return copies_.empty(); }
   /// Copies the gathers' elements, on all threads, and lets the frame read the copies. Throws NoMemory.

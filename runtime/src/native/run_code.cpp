@@ -12,9 +12,11 @@
 #include "native/call.hpp"
 #include "native/chunk_runner.hpp"
 #include "native/coalesce.hpp"
+#include "native/column_panels.hpp"
 #include "native/components.hpp"
 #include "native/memory.hpp"
 #include "native/padded_rows.hpp"
+#include "native/per_worker.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/variable_outputs.hpp"
@@ -77,32 +79,32 @@ class DomainPieces {
 /// columns, so that what the rows of successive blocks read stays in the cache.
 class RowBlocks {
  public:
-  RowBlocks(const native::Extents& domain, std::int64_t rows)
+  /// Blocks of `rows` rows and `width` columns, at most native::mostLanes.
+  RowBlocks(const native::Extents& domain, std::int64_t rows, std::int64_t width)
       : domain_(domain),
         rows_(rows),
+        width_(width),
         perColumn_((domain[1] + rows - 1) / rows),
         perRow_((domain[0] + width - 1) / width) {}
 
   std::int64_t count() const { return perColumn_ * perRow_ * domain_[2] * domain_[3]; }
-  std::int64_t elementsOfOne() const { return std::min(domain_[0], width) * rows_; }
+  std::int64_t elementsOfOne() const { return std::min(domain_[0], width_) * rows_; }
 
   /// Calls visit(first, count, rows) for each of these blocks: `count` elements in each of `rows` rows.
   template <class Visit>
   void forEach(native::Range blocks, Visit&& visit) const {
     for (std::int64_t block = blocks.begin; block < blocks.end; ++block) {
       const std::int64_t y = block % perColumn_ * rows_;
-      const std::int64_t x = block / perColumn_ % perRow_ * width;
+      const std::int64_t x = block / perColumn_ % perRow_ * width_;
       const std::int64_t plane = block / perColumn_ / perRow_;
       const native::Extents first = {x, y, plane % domain_[2], plane / domain_[2]};
-      visit(first, std::min(domain_[0] - x, width), std::min(domain_[1] - y, rows_));
+      visit(first, std::min(domain_[0] - x, width_), std::min(domain_[1] - y, rows_));
     }
   }
 
  private:
-  static constexpr std::int64_t width = native::mostLanes;
-
   native::Extents domain_;
-  std::int64_t rows_;
+  std::int64_t rows_, width_;
   std::int64_t perColumn_, perRow_;
 };
 
@@ -125,8 +127,10 @@ class CodeRun {
         frame_(kernel, call, memory_.get()),
         layout_(kernel, call, frame_, choice, memory_.get()),
         pieces_(computed(call), kernel.code->isUneven != 0),
-        blocks_(computed(call), rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
-        padded_(kernel, call, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
+        panels_(kernel, call, rowsEntry_),
+        blocks_(computed(call), rowsEntry_ == nullptr ? 1 : rowsEntry_->rows,
+                panels_.isEmpty() ? native::mostLanes : panels_.width()),
+        padded_(kernel, call, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows, panels_),
         isRecorded_(has(Role::VariableOutput) || has(Role::Scatter)) {}
 
   void run() {
@@ -147,20 +151,15 @@ class CodeRun {
     const bool isAlone = rowsEntry_ == nullptr ? native::threadsFor(pieces_.count(), costOfPiece()) == 1
                                                : native::threadsFor(blocks_.count(), costOfBlock()) == 1;
     if (isRecorded_ || !isAlone) return run();
+    if (rowsEntry_ != nullptr) {
+      copyGathers();
+      if (!blockRunner_) blockRunner_.emplace(*this);
+      visitBlocks({0, blocks_.count()}, *blockRunner_);
+      return;
+    }
     const std::size_t atOnce = rowsAtOnce();
-    if (!runner_) {
-      if (rowsEntry_ == nullptr) {
-        runner_.emplace(layout_, entry_, frame_.get(), ChunkHook{}, atOnce);
-      } else {
-        runner_.emplace(layout_, *rowsEntry_, frame_.get());
-      }
-    }
-    if (rowsEntry_ == nullptr) {
-      visitPieces({0, pieces_.count()}, *runner_, atOnce);
-    } else {
-      padded_.copyInto(frame_);
-      visitBlocks({0, blocks_.count()}, *runner_);
-    }
+    if (!runner_) runner_.emplace(layout_, entry_, frame_.get(), ChunkHook{}, atOnce);
+    visitPieces({0, pieces_.count()}, *runner_, atOnce);
   }
 
   /// Computes a box of the domain on the calling thread. There are no variable and scatter outputs.
@@ -233,15 +232,32 @@ class CodeRun {
   }
 
   void runBlocks() {
-    padded_.copyInto(frame_);
-    native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome, [&](Range range) {
-      ChunkRunner runner(layout_, *rowsEntry_, frame_.get());
-      visitBlocks(range, runner);
-    });
+    copyGathers();
+    PerWorker<BlockRunner> runners(native::threadsFor(blocks_.count(), costOfBlock()));
+    native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome,
+                       [&](Range range, int worker) { visitBlocks(range, runners.of(worker, *this)); });
   }
-  void visitBlocks(Range range, ChunkRunner& runner) const {
+  void copyGathers() {
+    padded_.copyInto(frame_);
+    panels_.fill();
+  }
+  /// What one thread needs to compute blocks: its own frame if it moves from panel to panel.
+  struct BlockRunner {
+    explicit BlockRunner(const CodeRun& run)
+        : runner(run.layout_, *run.rowsEntry_,
+                 run.panels_.isEmpty() ? run.frame_.get() : own.emplace(run.frame_, memory.get()).get()) {}
+
+    CallMemory memory;
+    std::optional<CodeFrame> own;
+    std::optional<std::int64_t> panel;  ///< the x that `own` has moved to
+    ChunkRunner runner;
+  };
+  void visitBlocks(Range range, BlockRunner& to) const {
     blocks_.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
-      runner.run(inDomain(first), count, static_cast<std::size_t>(rows));
+      const Extents at = inDomain(first);
+      if (to.own && to.panel != at[0]) panels_.moveTo(at[0], *to.own);
+      to.panel = at[0];
+      to.runner.run(at, count, static_cast<std::size_t>(rows));
     });
   }
   std::int64_t costOfBlock() const { return blocks_.elementsOfOne() << 6; }
@@ -378,10 +394,12 @@ class CodeRun {
   CodeFrame frame_;
   SlotLayout layout_;
   DomainPieces pieces_;
+  ColumnPanels panels_;
   RowBlocks blocks_;  ///< for rowsEntry_
   PaddedRows padded_;
   bool isRecorded_;
-  std::optional<ChunkRunner> runner_;  ///< of runAgain()
+  std::optional<BlockRunner> blockRunner_;  ///< of runAgain(), like runner_
+  std::optional<ChunkRunner> runner_;
 };
 
 }  // namespace

@@ -235,6 +235,8 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
 }
 
 void SlotArrays::moveTo(const Extents& first, std::size_t wanted, std::size_t placed) {
+  if (wanted == wanted_ && placed == placed_ && std::equal(first.begin() + 1, first.end(), at_.begin() + 1))
+    return;  // another element of the same rows
   const bool isNext = wanted_ == 1 && wanted == 1 && placed_ == 1 && placed == 1 && first[1] == at_[1] + 1 &&
                       first[2] == at_[2] && first[3] == at_[3];
   at_ = first;

@@ -113,7 +113,7 @@ class Helpers {
   void run(SharedLoop& loop, int threads, bool mayWake) {
     start(threads - 1);
     const int number = takePlace();
-    if (number < 0) return loop.workFrom(0);  // as many loops as places run already
+    if (number < 0) return loop.workAs(0);  // as many loops as places run already
     Place& place = places_[number];
     const std::uint64_t bit = std::uint64_t{1} << number;
     place.loop = &loop;
@@ -121,7 +121,7 @@ class Helpers {
     place.threads.store(most);
     open_.fetch_or(bit);
     if (mayWake) wakeBelow(0, place);
-    loop.workFrom(0);
+    loop.workAs(0);
     if ((open_.load() & bit) != 0) open_.fetch_and(~bit);
     // Helpers say that they are there before they look whether it is open, so that none comes after this.
     const auto here = static_cast<std::uint32_t>(number + 1);
@@ -238,7 +238,7 @@ class Helpers {
       const bool hasTurn = (open_.load() & bit) != 0 && number < place.threads.load();
       if (hasTurn) {
         wakeBelow(number, place);
-        place.loop->workFrom(number);
+        place.loop->workAs(number);
         if ((open_.load() & bit) != 0) open_.fetch_and(~bit);  // all pieces have been taken
       }
       self.at.store(0);
@@ -303,7 +303,7 @@ struct Ending {
 
 }  // namespace
 
-SharedLoop::SharedLoop(std::int64_t count, std::int64_t pieces, int shares, void (*work)(void*, Range),
+SharedLoop::SharedLoop(std::int64_t count, std::int64_t pieces, int shares, void (*work)(void*, Range, int),
                        void* context)
     : count_(count), pieces_(pieces), shares_(shares), work_(work), context_(context) {
   for (int i = 0; i < shares_; ++i) {
@@ -312,21 +312,21 @@ SharedLoop::SharedLoop(std::int64_t count, std::int64_t pieces, int shares, void
   }
 }
 
-void SharedLoop::workFrom(int first) {
+void SharedLoop::workAs(int worker) {
   for (int i = 0; i < shares_; ++i) {
-    Share& share = share_[static_cast<std::size_t>((first + i) % shares_)];
+    Share& share = share_[static_cast<std::size_t>((worker + i) % shares_)];
     while (!hasThrown_.load(std::memory_order_relaxed) &&
            share.next.load(std::memory_order_relaxed) < share.end) {
       const std::int64_t piece = share.next.fetch_add(1, std::memory_order_relaxed);
       if (piece >= share.end) break;
-      workOn(piece);
+      workOn(piece, worker);
     }
   }
 }
 
-void SharedLoop::workOn(std::int64_t piece) {
+void SharedLoop::workOn(std::int64_t piece, int worker) {
   try {
-    work_(context_, {count_ * piece / pieces_, count_ * (piece + 1) / pieces_});
+    work_(context_, {count_ * piece / pieces_, count_ * (piece + 1) / pieces_}, worker);
   } catch (...) {
     const std::lock_guard lock(mutex_);
     if (!thrown_) thrown_ = std::current_exception();
@@ -379,10 +379,11 @@ std::int64_t threadsFor(std::int64_t count, std::int64_t cost) {
   return std::clamp<std::int64_t>(worthIt, 1, mostThreads());
 }
 
-void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context) {
+void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range, int),
+                void* context) {
   const std::int64_t threads = threadsFor(count, cost);
   if (threads <= 1) {
-    work(context, {0, count});
+    work(context, {0, count}, 0);
     return;
   }
   const std::optional<std::int64_t> total = checkedProduct(count, cost);

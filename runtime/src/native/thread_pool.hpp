@@ -22,10 +22,11 @@ class SharedLoop {
   static constexpr int mostShares = 64;
 
   /// `pieces` ranges of about equal length, in `shares` shares of which none is empty.
-  SharedLoop(std::int64_t count, std::int64_t pieces, int shares, void (*work)(void*, Range), void* context);
+  SharedLoop(std::int64_t count, std::int64_t pieces, int shares, void (*work)(void*, Range, int),
+             void* context);
 
-  /// Works on pieces, first on those of this share, until all have been taken.
-  void workFrom(int share);
+  /// Works on pieces as the thread of this number, first on those of its share, until all have been taken.
+  void workAs(int worker);
   /// Throws what a piece has thrown. To be called after all threads have left.
   void finish() const {
     if (thrown_) std::rethrow_exception(thrown_);
@@ -38,11 +39,11 @@ class SharedLoop {
     std::int64_t end;
   };
 
-  void workOn(std::int64_t piece);
+  void workOn(std::int64_t piece, int worker);
 
   std::int64_t count_, pieces_;
   int shares_;
-  void (*work_)(void*, Range);
+  void (*work_)(void*, Range, int);
   void* context_;
   std::atomic<bool> hasThrown_ = false;  ///< pieces that nobody has taken are left out
   std::mutex mutex_;  ///< protects thrown_

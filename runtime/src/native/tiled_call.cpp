@@ -87,11 +87,10 @@ void TiledCall::findUses() {
 void TiledCall::addUse(const Operands::Lent& lent) {
   const Role role = run_.kernel().parameters[lent.operand].role;
   const bool isOutput = role == Role::Output;
-  uses_.push_back({lent.stream, lent.isSpare, isOutput, distanceOf(lent.operand)});
-  if (role != Role::Gather) return;
-  const Parameter& gather = run_.kernel().parameters[lent.operand];
-  for (std::size_t d = 0; d < 4; ++d)
-    isPeriodic_[d] = isPeriodic_[d] || (gather.boundary == Boundary::Wrap && extent_[d] > 1);
+  const bool wraps =
+      role == Role::Gather && run_.kernel().parameters[lent.operand].boundary == Boundary::Wrap;
+  uses_.push_back({lent.stream, lent.isSpare, isOutput, distanceOf(lent.operand), lent.operand, wraps});
+  for (std::size_t d = 0; d < 4; ++d) isPeriodic_[d] = isPeriodic_[d] || (wraps && extent_[d] > 1);
 }
 
 /// Dimensions in which nothing is known, or which differ from those of the stream that is written, have any distance.
@@ -133,7 +132,7 @@ Extents TiledCall::distanceOf(std::size_t i) const {
 }
 
 const BoxCode& TiledCall::code() {
-  operands_.beginAgain();
+  withArrays();
   for (const std::unique_ptr<BoxCode>& code : codes_) {
     if (code->hasArraysOf(call_)) return *code;
   }

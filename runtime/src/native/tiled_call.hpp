@@ -23,6 +23,8 @@ class TiledCall {
     bool isSpare;
     bool isWritten;
     native::Extents distance;  ///< native::TileAccess::distance
+    std::size_t operand;  ///< its number in the call
+    bool wraps;  ///< it is a gather whose ends are neighbours
   };
 
   /// The run must outlive it.
@@ -42,6 +44,13 @@ class TiledCall {
   const native::Part& computed() const { return computed_; }
   bool isPeriodic(std::size_t dimension) const { return isPeriodic_[dimension]; }
 
+  const program::Kernel& kernel() const { return run_.kernel(); }
+  const CodeChoice& choice() const { return run_.choice(); }
+  /// The call with the arrays that the streams have now. It is valid until the next one, and until code().
+  const native::Call& withArrays() {
+    operands_.beginAgain();
+    return call_;
+  }
   /// The code for the arrays that the streams have now. It stays until dropCode().
   const BoxCode& code();
   void dropCode() { codes_.clear(); }

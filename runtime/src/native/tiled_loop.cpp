@@ -74,16 +74,6 @@ class ArrayNumbers {
   std::vector<std::size_t> written_;
 };
 
-/// Bytes of the cache that a thread's tile may take.
-std::int64_t cacheOfTile() {
-  if (const auto given = givenTileBytes()) return *given;
-  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
-  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
-  const std::int64_t found = bytesOfCache(2);
-  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
-  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
-}
-
 /// The most states of its streams' arrays for which a call keeps its code.
 constexpr std::size_t mostCodes = 16;
 
@@ -293,7 +283,6 @@ ArrayNumbers TiledLoop::forEachCall(const LoopState& loop, const TiledGroup& gro
 void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mostIterations) const {
   native::TileProblem problem;
   problem.extent = group.calls.front()->extent();
-  problem.cache = cacheOfTile();
   problem.threads = native::mostThreads();
   problem.mostIterations = mostIterations;
   struct Array {
@@ -329,6 +318,7 @@ void TiledLoop::choose(const LoopState& loop, TiledGroup& group, std::int64_t mo
                 [&](const TiledCall&, std::span<const TileAccess> accesses) { skews.add(accesses); });
     return skews.most();
   };
+  problem.cache = native::cacheOfTile(problem.skew(two) == Extents{});
   group.choice = native::chooseTiles(problem);
 }
 

@@ -5,6 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "device/loop_tiles.hpp"
+#include "native/thread_pool.hpp"
+#include "support/host_limits.hpp"
+
 namespace sk::native {
 
 Extents Skews::add(std::span<const TileAccess> accesses) {
@@ -117,6 +121,20 @@ std::optional<TileChoice> choiceAlong(const TileProblem& problem, std::span<cons
 }
 
 }  // namespace
+
+std::int64_t cacheOfTile(bool isChain) {
+  if (const auto given = givenTileBytes()) return *given;
+  if (isChain) {
+    constexpr std::int64_t nearest = 48 << 10;
+    const std::int64_t first = bytesOfCache(1);
+    return (first > 0 ? first : nearest) * 2 / 3;
+  }
+  // Tiles of less than `enough` are so short that they save less than the third level's slower answers cost.
+  constexpr std::int64_t usual = 1 << 20, enough = 5 << 18;
+  const std::int64_t found = bytesOfCache(2);
+  const std::int64_t own = (found > 0 ? found : usual) * 5 / 8;
+  return std::max(own, std::min(enough, bytesOfCache(3) / (2 * native::mostThreads())));
+}
 
 std::optional<TileChoice> chooseTiles(const TileProblem& problem) {
   std::int64_t elements = 1;

@@ -154,4 +154,8 @@ struct TileChoice {
 /// The best tiles; nullopt if the streams stay in the caches as they are, or if tiles save little.
 std::optional<TileChoice> chooseTiles(const TileProblem& problem);
 
+/// Bytes of the cache that a thread's tile may take: SK_LOOP_TILES says how many, 0 if it is "off". Throws sk::Error if it says something else. `isChain`: each element is computed
+/// from itself alone, so that tiles of any size save as much.
+std::int64_t cacheOfTile(bool isChain = false);
+
 }  // namespace sk::native

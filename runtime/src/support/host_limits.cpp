@@ -174,7 +174,10 @@ HostMemory hostMemory(const fs::path& root) {
 
 std::int64_t bytesOfCache([[maybe_unused]] int level) {
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
-  return std::max<std::int64_t>(sysconf(level == 2 ? _SC_LEVEL2_CACHE_SIZE : _SC_LEVEL3_CACHE_SIZE), 0);
+  const int name = level == 1   ? _SC_LEVEL1_DCACHE_SIZE
+                   : level == 2 ? _SC_LEVEL2_CACHE_SIZE
+                                : _SC_LEVEL3_CACHE_SIZE;
+  return std::max<std::int64_t>(sysconf(name), 0);
 #else
   return 0;
 #endif

@@ -28,7 +28,7 @@ int withinQuota(int processors, const std::filesystem::path& root);
 /// A rank's share of a machine with `online` processors, of which it may use `usable` and on which `ranks` ranks run.
 int shareOfRank(int usable, int online, int ranks);
 
-/// Bytes of the cache of this level, 2 or 3, that a processor has or shares with others; 0 if it is unknown.
+/// Bytes of the cache of this level, 1 to 3, that a processor has or shares with others; 0 if it is unknown.
 std::int64_t bytesOfCache(int level);
 
 struct HostMemory {

@@ -37,6 +37,7 @@ const Raced raced[] = {
      reactionLoopOpenMp},
     {"wave loop", fieldProblem, waveLoopCheck, waveLoopOurs, waveLoopCalls, waveLoopOpenMp},
     {"chain of four", fieldProblem, chainCheck, chainOurs, chainInOneKernel, chainOpenMp},
+    {"pipeline of four", fieldProblem, chainCheck, pipelineOurs, chainInOneKernel, chainOpenMp},
 };
 
 /// What is wrong after two runs, the second of which begins anew.

@@ -294,10 +294,10 @@ int main(int argc, char** argv) {
   CLI::App app{"fuzz_cpp: compares random programs with what they mean in C++", "fuzz_cpp"};
   options.addTo(app, "program");
   app.add_option("--targets", options.targets,
-                 "What to run: native, lanes, glsl330, glsl430, essl300, webgl2")
+                 "What to run: native, lanes, glsl330, glsl430, essl300, essl310, webgl2")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"native", "lanes", "glsl330", "glsl430", "essl300", "webgl2"}));
+      ->check(CLI::IsMember({"native", "lanes", "glsl330", "glsl430", "essl300", "essl310", "webgl2"}));
   app.add_option("--without", options.without, "Constructs to leave out")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -121,7 +121,7 @@ Outputs runKernel(sk::Device& device, const sk::program::Kernel& kernel, int ran
 
 }  // namespace
 
-const std::vector<std::string> deviceTargets = {"native", "glsl330", "glsl430", "essl300"};
+const std::vector<std::string> deviceTargets = {"native", "glsl330", "glsl430", "essl300", "essl310"};
 
 NativeObject compileNative(const skc::ir::Module& module, const std::string& level) {
   std::vector<skc::native::KernelRequest> requests;

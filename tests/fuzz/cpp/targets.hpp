@@ -17,7 +17,7 @@
 
 namespace fuzz::cpp {
 
-/// The names of the targets that run in this process: native, glsl330, glsl430, essl300.
+/// The names of the targets that run in this process: native, glsl330, glsl430, essl300, essl310.
 extern const std::vector<std::string> deviceTargets;
 
 /// An object file with the native code of a module's kernels, and the symbols of their codes, in the order of

@@ -100,12 +100,12 @@ bool isReal(Element element) { return element == Element::Float || element == El
 
 }  // namespace
 
-const std::vector<std::string> targetNames = {"native", "glsl330", "glsl430", "essl300", "webgl2"};
+const std::vector<std::string> targetNames = {"native", "glsl330", "glsl430", "essl300", "essl310", "webgl2"};
 
 bool canRun(const std::string& target, const Case& one) {
   const Operation& operation = operationNamed(one.operation);
   const bool isNative = target == "native", isWeb = target == "webgl2",
-             isPairs = one.isPairs || isWeb || target == "essl300";
+             isPairs = one.isPairs || isWeb || target.starts_with("essl");
   if (one.options.contraction == sk::Contraction::Fast && !isNative) return false;
   if (one.options.precision == sk::Precision::Double && (isPairs && !isNative)) return false;
   if (isNative) return true;
@@ -120,7 +120,7 @@ bool canRun(const std::string& target, const Case& one) {
     if (operation.name == "foldedNeighbors" && one.shape.back() <= 17) return false;
     return one.options.precision == sk::Precision::Default || hasVariants;
   }
-  return one.storage != sk::Storage::Double || target != "essl300";
+  return one.storage != sk::Storage::Double || !target.starts_with("essl");
 }
 
 bool isToValue(const Case& one) {
@@ -149,8 +149,8 @@ Arithmetic arithmeticOf(const std::string& target, const Case& one) {
   const bool isNative = target == "native";
   return {{.isNative = isNative,
            .flushesDenormals = !isNative,
-           .hasPairs = !isNative && (one.isPairs || target == "essl300" || target == "webgl2"),
-           .isDispatched = target == "glsl430"}};
+           .hasPairs = !isNative && (one.isPairs || target.starts_with("essl") || target == "webgl2"),
+           .isDispatched = target == "glsl430" || target == "essl310"}};
 }
 
 Arithmetic Devices::arithmetic(const std::string& target, const Case& one) {

@@ -13,7 +13,7 @@
 
 namespace fuzz::numbers {
 
-/// The names of targets: native, glsl330, glsl430, essl300, webgl2.
+/// The names of targets: native, glsl330, glsl430, essl300, essl310, webgl2.
 extern const std::vector<std::string> targetNames;
 
 /// Whether a target can run a case: some have no doubles, rows, or contraction.

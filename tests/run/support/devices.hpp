@@ -26,7 +26,9 @@ namespace run_tests {
 /// Under the first, extents above 64 are linearised. Under the second, streams of more than 64 elements need several layers.
 inline constexpr int smallLimits[] = {64, 8};
 
-/// The device with a profile ("glsl330", "glsl430", "essl300", "native") and its own texture limit (0) or a smaller one.
+/// The device with a profile ("glsl330", "glsl430", "essl300", "native") and its own texture limit (0) or a smaller one. The
+/// environment variable SK_TEST_COMPUTE names a profile that takes the place of glsl430, "essl310", and leaves out all other devices
+/// of the functions below.
 sk::Device& device(std::string_view profile, int textureLimit = 0);
 
 /// A profile with a texture limit.

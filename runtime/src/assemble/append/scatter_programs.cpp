@@ -281,23 +281,21 @@ std::string combination(const program::Parameter& scatter, std::string_view type
 std::string recordProgram(const Profile& profile, const program::Parameter& scatter, bool isCounted) {
   static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", ".xyz", ""};
   static constexpr std::array<std::string_view, 5> rests = {"", ", 0, 0, 0", ", 0, 0", ", 0", ""};
-  static constexpr std::array<std::string_view, 5> channels = {"", "r", "rg", "rgba", "rgba"};
   const Field& field = scatter.element->fields.front();
   const bool isFloat = field.scalar == Scalar::Float;
   const std::string_view kind = isFloat ? "" : field.scalar == Scalar::Int ? "i" : "u";
   const std::string_view type = scatter.element->glsl;
   const auto width = static_cast<std::size_t>(field.width);
-  std::string text = fmt::format("{}\n{}{}", profile.version, isPair(scatter) ? "#define SK_PAIRS\n" : "",
-                                 isCounted ? "#define SK_COUNTED\n" : "");
+  const std::array formats = {imageFormat(field)};
+  std::string text = fmt::format("{}\n{}{}{}{}", profile.version,
+                                 declaresFormats(profile) ? formatExtension(profile, formats) : "",
+                                 isPair(scatter) ? "#define SK_PAIRS\n" : "",
+                                 isCounted ? "#define SK_COUNTED\n" : "", precisionStatements(profile));
   text += fmt::format(
       "#define SK_VALUE {}\n#define SK_SWIZZLE {}\n#define SK_SAMPLER {}sampler2D\n#define SK_IMAGE "
       "{}image2D\n"
-      "#define SK_FORMAT {}32{}\n#define SK_TEXEL(v) {}vec4(v{})\n",
-      type, swizzles[width], kind, kind, channels[width],
-      isFloat       ? "f"
-      : kind == "u" ? "ui"
-                    : "i",
-      kind, rests[width]);
+      "#define SK_FORMAT {}\n#define SK_TEXEL(v) {}vec4(v{})\n",
+      type, swizzles[width], kind, kind, formats.front(), kind, rests[width]);
   text += combination(scatter, type);
   return text + std::string(library::combineRecords);
 }

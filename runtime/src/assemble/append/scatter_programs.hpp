@@ -72,8 +72,8 @@ inline constexpr std::int32_t recordTile = 1024;
 
 /// The program for a scatter output that isListed(). It is dispatched in rows of 2^15 groups, one for each tile, and has the
 /// uniforms sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_list_shift and sk_width. Its samplers are sk_keys, of sorted pairs;
-/// sk_count, of the number of records, if it `isCounted` on the device; and sk_values, of the list, unless a pair holds the value.
-/// Image 0 is the target.
+/// sk_count, of the number of records, if it `isCounted` on the device; sk_values, of the list, unless a pair holds the value; and in
+/// ES sk_elements, of the target. Image 0 is the target.
 std::string recordProgram(const Profile& profile, const program::Parameter& scatter, bool isCounted);
 
 }  // namespace sk::assemble

@@ -336,7 +336,7 @@ void declareOutputs(ProgramText& program, const Parameter& parameter) {
   const auto [first, end] = writtenPlanes(parameter);
   for (std::size_t plane = first; plane < end; ++plane) {
     const Field& field = heldBy(parameter).fields[plane];
-    program.output(texelType(field, outputWidth(field)), outputName(parameter, plane));
+    program.output(texelType(field, outputWidth(field)), outputName(parameter, plane), imageFormat(field));
   }
 }
 

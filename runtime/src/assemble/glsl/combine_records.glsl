@@ -19,7 +19,14 @@ uniform isampler2D sk_count;  // the number of records, in the fourth component 
 #ifndef SK_PAIRS
 uniform SK_SAMPLER sk_values;
 #endif
+#ifdef GL_ES  // which reads no image that it writes, unless of one component; no texel is read after it is written
+uniform SK_SAMPLER sk_elements;
+layout(binding = 0, SK_FORMAT) writeonly uniform SK_IMAGE sk_target;
+#define SK_ELEMENT(at) texelFetch(sk_elements, at, 0)
+#else
 layout(binding = 0, SK_FORMAT) coherent uniform SK_IMAGE sk_target;
+#define SK_ELEMENT(at) imageLoad(sk_target, at)
+#endif
 
 const int sk_run = 4, sk_tile = 1024;
 
@@ -96,7 +103,7 @@ void main() {
     int end = n + 1;
     while (end < sk_tile && sk_targets[end] == key) ++end;
     ivec2 to = sk_targetOf(key);
-    SK_VALUE value = sk_combined(SK_VALUE(imageLoad(sk_target, to)SK_SWIZZLE), n, end);
+    SK_VALUE value = sk_combined(SK_VALUE(SK_ELEMENT(to)SK_SWIZZLE), n, end);
     if (end < sk_tile) {
       imageStore(sk_target, to, SK_TEXEL(value));
     } else {

@@ -281,9 +281,13 @@ std::string bodyDefinitions(const Profile& profile, std::string_view text) {
 }
 
 std::string_view exactExtensions(const Profile& profile) {
+  if (profile.barrier != Barrier::Precise) return "";
+  if (profile.es) {
+    return "#ifdef GL_EXT_gpu_shader5\n#extension GL_EXT_gpu_shader5 : require\n#else\n"
+           "#extension GL_OES_gpu_shader5 : require\n#endif\n";
+  }
   const bool hasPrecise = profile.stage == Stage::Compute;  // GLSL 4.30
-  return profile.barrier == Barrier::Precise && !hasPrecise ? "#extension GL_ARB_gpu_shader5 : require\n"
-                                                            : "";
+  return hasPrecise ? "" : "#extension GL_ARB_gpu_shader5 : require\n";
 }
 
 std::string_view exactDefinitions(Barrier barrier) {

@@ -97,6 +97,20 @@ constexpr std::string_view esPrecision =
     "precision highp sampler2D;\n"
     "precision highp isampler2D;\n"
     "precision highp usampler2D;\n";
+constexpr std::string_view esPrecisionOfImages =
+    "precision highp image2D;\n"
+    "precision highp iimage2D;\n"
+    "precision highp uimage2D;\n"
+    "precision highp image2DArray;\n"
+    "precision highp iimage2DArray;\n"
+    "precision highp uimage2DArray;\n";
+
+/// The format of an image of 32 bits with the components of a texel's type.
+std::string plainFormat(std::string_view texel) {
+  const std::string_view kind = texel.front() == 'i' ? "i" : texel.front() == 'u' ? "ui" : "f";
+  return fmt::format("{}32{}",
+                     std::string_view("rgba").substr(0, static_cast<std::size_t>(componentsOf(texel))), kind);
+}
 
 }  // namespace
 
@@ -113,8 +127,10 @@ void ProgramText::flatInput(std::string_view type, std::string_view name) {
   addOnce(uniforms_, fmt::format("flat in {} {};", type, name));
 }
 
-void ProgramText::output(std::string_view type, std::string_view name) {
-  outputs_.push_back({std::string(type), std::string(name)});
+void ProgramText::output(std::string_view type, std::string_view name, std::string_view format) {
+  outputs_.push_back({.type = std::string(type),
+                      .name = std::string(name),
+                      .format = format.empty() ? plainFormat(type) : std::string(format)});
 }
 
 void ProgramText::storeAt(std::string_view place, bool isArray) {
@@ -150,7 +166,7 @@ void ProgramText::makeAtomic(std::size_t output, std::string_view format) {
 }
 
 std::string ProgramText::storeOf(std::size_t output, std::string_view place) const {
-  const auto& [type, name, isStoredLater, atomicFormat] = outputs_[output];
+  const auto& [type, name, isStoredLater, atomicFormat, format] = outputs_[output];
   return fmt::format("imageStore(sk_image{}, {}, {});", output, place, wholeTexel(type, name));
 }
 
@@ -235,6 +251,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
                               intrinsics.useExactFloats || callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   program += extensions_;
+  if (declaresFormats_ && !isInBuffer_) program += extensionsOfImages(profile);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile);
   const bool hasLoopCheck = profile.checksLoops && (kernel.usesLoops || takesManyIterations_);
@@ -244,7 +261,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   };
   if (!profile.highProducts && (multiplies(body) || multiplies(declarations) || multiplies(more)))
     program += "#define SK_WITHOUT_HIGH_PRODUCTS\n";
-  if (profile.es) program += esPrecision;
+  program += precisionStatements(profile);
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));
   if (kernel.usesLongs) program += longDefinitions(kernel.usesDoubles);
@@ -265,6 +282,18 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   return program + std::string(library::loopCheckEnd);
 }
 
+std::string ProgramText::extensionsOfImages(const Profile& profile) const {
+  std::vector<std::string> formats;
+  bool areAtomic = false;
+  for (const Output& output : outputs_) {
+    areAtomic = areAtomic || !output.atomicFormat.empty();
+    formats.push_back(output.atomicFormat.empty() ? output.format : output.atomicFormat);
+  }
+  std::string text(formatExtension(profile, formats));
+  if (areAtomic) text += "#extension GL_OES_shader_image_atomic : require\n";
+  return text;
+}
+
 std::string ProgramText::ownText() const {
   std::string text;
   if (!isDrawn()) text += "uniform ivec4 sk_rect;\n";
@@ -280,7 +309,7 @@ std::string ProgramText::ownText() const {
 std::string ProgramText::declarationOfOutputs() const {
   std::string text = isInBuffer_ ? declarationOfBuffer() : std::string();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    const auto& [type, name, isStoredLater, atomicFormat] = outputs_[i];
+    const auto& [type, name, isStoredLater, atomicFormat, format] = outputs_[i];
     if (isDrawn()) {
       fmt::format_to(std::back_inserter(text), "layout(location = {}) out {} {};\n", i, type, name);
     } else {
@@ -288,7 +317,9 @@ std::string ProgramText::declarationOfOutputs() const {
         fmt::format_to(std::back_inserter(text), "layout(binding = {}, {}) uniform {} sk_image{};\n", i,
                        atomicFormat, imageType(type, false), i);
       else if (!isInBuffer_)
-        fmt::format_to(std::back_inserter(text), "layout(binding = {}) writeonly uniform {} sk_image{};\n", i,
+        fmt::format_to(std::back_inserter(text),
+                       "layout(binding = {}{}{}) writeonly uniform {} sk_image{};\n", i,
+                       declaresFormats_ ? ", " : "", declaresFormats_ ? std::string_view(format) : "",
                        imageType(type, isArray_), i);
       fmt::format_to(std::back_inserter(text), "{} {};\n", type, name);
     }
@@ -361,6 +392,21 @@ std::string ProgramText::storesAtEnd() const {
       fmt::format_to(std::back_inserter(text), "  {}\n", storeOf(i, place_));
     }
   }
+  return text;
+}
+
+std::string_view formatExtension(const Profile& profile, std::span<const std::string> formats) {
+  Profile plain = profile;
+  plain.storesAllFormats = false;
+  const bool needsMore =
+      !std::ranges::all_of(formats, [&](const std::string& format) { return mayStore(plain, format); });
+  return needsMore ? "#extension GL_NV_image_formats : require\n" : "";
+}
+
+std::string precisionStatements(const Profile& profile) {
+  if (!profile.es) return {};
+  std::string text(esPrecision);
+  if (profile.stage == Stage::Compute) text += esPrecisionOfImages;
   return text;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,11 +45,17 @@ enum class Function : std::uint8_t {
 };
 std::string_view text(Function function);
 
+/// Whether the programs of a profile must declare the formats of the images that they write.
+inline bool declaresFormats(const Profile& profile) { return profile.es && profile.stage == Stage::Compute; }
+
 class ProgramText {
  public:
   ProgramText() = default;  ///< of a draw
   explicit ProgramText(const Profile& profile)
-      : stage_(profile.stage), sharesTexels_(profile.sharesTexels), samples_(profile.samples) {}
+      : stage_(profile.stage),
+        declaresFormats_(declaresFormats(profile)),
+        sharesTexels_(profile.sharesTexels),
+        samples_(profile.samples) {}
 
   Stage stage() const { return stage_; }
   bool sharesTexels() const { return sharesTexels_ && stage_ == Stage::Compute; }
@@ -65,8 +72,9 @@ class ProgramText {
   std::string uniform(std::string_view type, std::string_view name);
   /// Declares an input that is constant over a point or triangle.
   void flatInput(std::string_view type, std::string_view name);
-  /// Declares the output of the next location: a variable of a texel type.
-  void output(std::string_view type, std::string_view name);
+  /// Declares the output of the next location: a variable of a texel type. `format` is that of its image, imageFormat();
+  /// empty: of 32 bits, with as many components as the type.
+  void output(std::string_view type, std::string_view name, std::string_view format = {});
   /// Sets where a compute program stores its outputs at the end of main(): an ivec2, or an ivec3 in array
   /// textures.
   void storeAt(std::string_view place, bool isArray);
@@ -79,6 +87,7 @@ class ProgramText {
     std::string type, name;
     bool isStoredLater = false;
     std::string atomicFormat = {};  ///< empty: the image is only written
+    std::string format = {};  ///< of the image
   };
   const Output& outputAt(std::size_t number) const { return outputs_[number]; }
   /// The number of outputs so far, which is the binding of the next one's image.
@@ -169,11 +178,13 @@ class ProgramText {
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
+  std::string extensionsOfImages(const Profile& profile) const;
   std::string mainOf(const std::string& body) const;
   std::string mainOfTiles(const std::string& body) const;
   std::string storesAtEnd() const;
 
   Stage stage_ = Stage::Fragment;
+  bool declaresFormats_ = false;
   bool sharesTexels_ = false;
   bool samples_ = false;
   std::string place_;  ///< of storeAt()
@@ -202,6 +213,11 @@ class ProgramText {
   std::string foreign_;
   std::size_t shared_ = 0;  ///< bytes
 };
+
+/// The #extension line of a program that writes images of these formats, which ends its line; or nothing.
+std::string_view formatExtension(const Profile& profile, std::span<const std::string> formats);
+/// The statements that give all types of a program of ES their precision; nothing for other profiles.
+std::string precisionStatements(const Profile& profile);
 
 /// `name(arguments)` on one line, or with one line per argument if that is too long.
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent);

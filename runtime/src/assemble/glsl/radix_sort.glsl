@@ -94,7 +94,7 @@ uint sk_digitOf(uint key) {
 }
 
 //// countDigits
-layout(binding = 0) writeonly uniform uimage2D sk_counts;
+layout(binding = 0 SK_WORDS) writeonly uniform uimage2D sk_counts;
 
 shared uint sk_count[sk_rows * 256];
 
@@ -124,8 +124,8 @@ void main() {
 //// sumCounts
 // The sums before each of sk_length counts within its tile, and the totals of tiles.
 uniform usampler2D sk_counts;
-layout(binding = 0) writeonly uniform uimage2D sk_sums;
-layout(binding = 1) writeonly uniform uimage2D sk_totals;
+layout(binding = 0 SK_WORDS) writeonly uniform uimage2D sk_sums;
+layout(binding = 1 SK_WORDS) writeonly uniform uimage2D sk_totals;
 
 shared uint sk_kept[4096 + 128];
 
@@ -167,7 +167,7 @@ void main() {
 uniform usampler2D sk_sums;
 uniform usampler2D sk_totals;  // of the tiles of sums, themselves summed
 #ifndef SK_TO_BUFFER
-layout(binding = 0) writeonly uniform uimage2D sk_moved;
+layout(binding = 0 SK_MOVED_WORDS) writeonly uniform uimage2D sk_moved;
 #endif
 
 void sk_put(uint n, uvec2 word) {
@@ -316,7 +316,7 @@ void main() {
 
 //// storeWords
 // From the buffer to a texture, two rows at once where tiles consist of pairs of rows (sk_paired).
-layout(binding = 0) writeonly uniform uimage2D sk_moved;
+layout(binding = 0 SK_MOVED_WORDS) writeonly uniform uimage2D sk_moved;
 
 void main() {
   int i = int(gl_LocalInvocationIndex), tile = sk_group();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "assemble/sort/radix_program.hpp"
 
+#include <array>
 #include <initializer_list>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -40,6 +42,19 @@ bool hasPairs(RadixStep step) {
   return false;
 }
 
+/// The formats of the images of words and of pairs. GLSL needs none for images that are only written.
+std::string formatDefinitions(const Profile& profile, RadixStep step) {
+  if (!declaresFormats(profile)) return "#define SK_WORDS\n#define SK_MOVED_WORDS\n";
+  return fmt::format("#define SK_WORDS , r32ui\n#define SK_MOVED_WORDS , {}\n",
+                     hasPairs(step) ? "rg32ui" : "r32ui");
+}
+
+std::string_view extensionOf(const Profile& profile, RadixStep step, RadixStorage storage) {
+  if (!declaresFormats(profile) || !hasPairs(step) || step == RadixStep::CountPairs || storage.writes)
+    return "";
+  return formatExtension(profile, std::array<std::string, 1>{"rg32ui"});
+}
+
 std::string definitions(bool usesSubgroups, const GroupShape& shape, RadixStep step, RadixKeys keys,
                         RadixStorage storage) {
   std::string text;
@@ -64,8 +79,9 @@ std::string radixProgram(const Profile& profile, RadixStep step, RadixKeys keys,
   const auto after = [&](bool usesSubgroups, const GroupShape& shape,
                          std::initializer_list<std::string_view> texts) {
     std::string program =
-        fmt::format("{}\n{}{}", profile.version, definitions(usesSubgroups, shape, step, keys, storage),
-                    library::radixHead);
+        fmt::format("{}\n{}{}{}{}{}", profile.version, extensionOf(profile, step, storage),
+                    definitions(usesSubgroups, shape, step, keys, storage), formatDefinitions(profile, step),
+                    precisionStatements(profile), library::radixHead);
     for (const std::string_view text : texts) program += text;
     return program;
   };

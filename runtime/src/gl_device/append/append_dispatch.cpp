@@ -79,8 +79,10 @@ class AppendDispatch {
   }
 
   bool isPossible() const {
-    if (layout_.whole.layered || imageCount() > static_cast<std::size_t>(device_.limits.drawBuffers) ||
-        words_ * 4 > device_.capabilities.storageBytes || words_ > INT32_MAX) {
+    constexpr std::size_t buffers = 2;  // states, and the check of loops
+    if (layout_.whole.layered || imageCount() > static_cast<std::size_t>(device_.limits.images) ||
+        imageCount() + buffers > static_cast<std::size_t>(device_.capabilities.outputResources) ||
+        !mayStore() || words_ * 4 > device_.capabilities.storageBytes || words_ > INT32_MAX) {
       return false;
     }
     const auto mayScatter = [&](const auto& target) {
@@ -217,6 +219,22 @@ class AppendDispatch {
     return count;
   }
 
+  /// Whether the device's compute programs have images of all formats that are written, and the atomic operations.
+  bool mayStore() const {
+    const GlPrograms& programs = device_.programs();
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      const Parameter& parameter = call_.kernel.parameters[i];
+      if (!assemble::isNeeded(parameter, call_.specs)) continue;
+      const bool isStream = parameter.role == Role::Output || parameter.role == Role::Scatter;
+      if (isStream && !programs.mayStore(streamOf(i).held())) return false;
+      if (parameter.role == Role::VariableOutput && !programs.mayStore(*parameter.element)) return false;
+    }
+    const auto isAtomic = [&](const auto& target) {
+      return call_.kernel.parameters[target->parameter].scatter != program::ScatterOp::Store;
+    };
+    return device_.capabilities.hasImageAtomics || std::ranges::none_of(targets_, isAtomic);
+  }
+
   /// Whether no other output is a region of the same stream.
   bool isOnlyWriter(std::size_t scatter) const {
     for (std::size_t i = 0; i < operands_.size(); ++i) {
@@ -263,7 +281,7 @@ class AppendDispatch {
   void bindStates() {
     device_.passes().bind(PassBuffer::GroupStates, bytesOfStates(), call_.kernel,
                           "the states of its work groups");
-    gl::StorageBuffer::clear(bytesOfStates());
+    gl::StorageBuffer::clear(device_.bound(), bytesOfStates());
   }
 
   /// Counts the pushes, and waits for their number.

@@ -68,7 +68,8 @@ IntegerProgram& AppendPrograms::records(const program::Parameter& scatter, bool 
     auto program = owner_.build({{}, assemble::recordProgram(owner_.computeProfile(), scatter, isCounted)},
                                 fmt::format("the program of {}", scatter.name));
     int unit = 0;
-    for (const char* name : {"sk_keys", "sk_count", "sk_values"}) program->program().setSampler(name, unit++);
+    for (const char* name : {"sk_keys", "sk_count", "sk_values", "sk_elements"})
+      program->program().setSampler(name, unit++);
     cached = {std::move(program), program::LinkedFile::objectOf(&scatter)};
   }
   return *cached.program;

@@ -205,6 +205,7 @@ void ListedScatter::combine(GlStream& stream) {
   bindPlanes(device_, sort_.pairs->planes(), 0);
   if (count_ != nullptr) bindPlanes(device_, {count_, 1}, 1);
   if (!assemble::isPair(scatter_)) bindPlanes(device_, values_.planes, 2);
+  if (device_.bound().isEs()) bindPlanes(device_, stream.planes, 3);
   const gl::Texture& target = stream.planes.front().texture;
   device_.bound().readWriteImage(0, target.name(), target.format().internalFormat);
   program.set(device_.bound(), "sk_length", length_);

@@ -68,7 +68,7 @@ class ListedScatter {
 
   /// Whether a device sorts this number of records.
   static bool isPossible(const GlDevice& device, std::int64_t length) {
-    return WordSort::isPossible(device, length);
+    return WordSort::isPossible(device, WordSort::Of::Pairs, length);
   }
 
   /// The planes that the kernel stores records to.

@@ -168,7 +168,8 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                const RegionLayout& domain, std::span<const Rect> rects,
                std::span<RenderTarget* const> targets, std::span<const gl::Texture> stacks,
                const assemble::Task& task) {
-  KernelProgram& program = device.programs().selected().kernelProgram(kernel, operands, domain, task);
+  KernelProgram& program =
+      device.programs().selectedFor(kernel, targets).kernelProgram(kernel, operands, domain, task);
   runKernel(device, preparedPass(device, program, targets), kernel, operands, domain, rects, targets, stacks,
             task);
 }
@@ -217,7 +218,8 @@ void prepareCopy(GlDevice& device, const program::Element& element, const Region
   if (!byKernel && isBlit(device, source, target)) return;
   for (const program::Field& field : element.fields) {
     const Operand operands[] = {{nullptr, source, {}}, {}};
-    device.programs().selected().kernelProgram(copyKernel(field), operands, target);
+    const Kernel& kernel = copyKernel(field);
+    device.programs().selectedFor(kernel, gl::formatOf(field)).kernelProgram(kernel, operands, target);
   }
 }
 

@@ -118,6 +118,20 @@ void dispatchTiles(GlDevice& device, KernelProgram& program, const FoldedTiles& 
   }
 }
 
+/// Whether compute programs of a device have images of the formats of all that a reduction writes: partial results, and the elements
+/// of streams, packed or not. The reduction may have more accumulators than the call.
+bool mayStoreAll(const GlDevice& device, const ResolvedReduction& call, const Reduction& reduction) {
+  const Kernel& fold = reduction.fold;
+  for (std::size_t i = 0; i < fold.parameters.size(); ++i) {
+    const Parameter& parameter = fold.parameters[i];
+    if (parameter.role != Role::Accumulator && parameter.role != Role::Output) continue;
+    const bool isStream = i < call.arguments.size() && call.arguments[i].region.stream != nullptr;
+    if (isStream && !device.programs().mayStore(glStream(call.arguments[i].region).held())) return false;
+    if (parameter.role == Role::Accumulator && !device.programs().mayStore(*parameter.element)) return false;
+  }
+  return true;
+}
+
 /// Whether a device has images and texture units for a fold, and the streams that it writes have no layers.
 bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedReduction& call) {
   const Kernel& fold = reduction.fold;
@@ -125,8 +139,10 @@ bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedRedu
   const std::size_t written = planesWritten(reduction, call.arguments, specs);
   const std::size_t read =
       assemble::textureUnits(fold, specs, {.uniforms = uniformPlanes(fold, call.arguments)});
-  if (written > static_cast<std::size_t>(device.limits.drawBuffers) ||
-      read > static_cast<std::size_t>(device.limits.textureUnits))
+  constexpr std::size_t buffers = 2;  // partial results, and the check of loops
+  if (written > static_cast<std::size_t>(device.limits.images) ||
+      written + buffers > static_cast<std::size_t>(device.capabilities.outputResources) ||
+      read > static_cast<std::size_t>(device.limits.textureUnits) || !mayStoreAll(device, call, reduction))
     return false;
   const auto hasLayers = [&](const Shape& shape) {
     return layoutOf(shape, device.textureLimits()).whole.layered;
@@ -371,7 +387,11 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   programs_.checkOptions(fold, call.options);
   refuseFoldCheck(call.reduction);
   checkStorages(fold, call.arguments, specsOf(fold, call.arguments));
-  const assemble::Stage stage = programs_.stageOf(fold, KernelClass::Reduces, call.options);
+  assemble::Stage stage = programs_.stageOf(fold, KernelClass::Reduces, call.options);
+  if (stage == assemble::Stage::Compute && !mayStoreAll(*this, call, call.reduction)) {
+    if (!fold.drawn || call.options.target == Target::Compute) programs_.failForImages(fold);
+    stage = assemble::Stage::Fragment;
+  }
   if (call.rows != nullptr) call.rows->makeTables(call.scan.has_value());
   const DeviceScope scope(*this);
   const gl::LabelGroup group(context().labels(), fold.name);

@@ -139,7 +139,8 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
   access.ofDigits = ofDigits_;
   if (isDispatched && device_.traits.tilesScans)
-    assemble::addTiles(access, reduction_, device_.traits.chainsScans && !device_.bound().isLogged());
+    assemble::addTiles(access, reduction_,
+                       device_.traits.chainsScans && !device_.bound().isLogged() && mayChain());
   access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
@@ -206,7 +207,13 @@ bool ReducePasses::mayGroup() const {
   const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
   return device_.programs().areDispatched() &&
          planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
-         planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
+         planes <= static_cast<std::size_t>(device_.limits.images);
+}
+
+bool ReducePasses::mayChain() const {
+  constexpr std::size_t buffers = 2;  // results of tiles, and the check of loops
+  return assemble::accumulatorPlanes(reduction_.fold) + buffers <=
+         static_cast<std::size_t>(device_.capabilities.outputResources);
 }
 
 bool ReducePasses::foldsByTexel(const Index4& blocks) const {
@@ -385,7 +392,7 @@ void ReducePasses::bindChain(const ReducePass& pass) {
   const std::size_t bytes =
       sizeof(std::uint32_t) * (2 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
   device_.passes().bind(PassBuffer::TileResults, bytes, reduction_.fold, "the results of tiles");
-  gl::StorageBuffer::clear(bytes);
+  gl::StorageBuffer::clear(device_.bound(), bytes);
 }
 
 bool ReducePasses::start(const ReducePass& pass) {
@@ -405,8 +412,10 @@ void ReducePasses::forEachPart(const ReducePass& pass, std::span<const Operand> 
   if (variant.walk != Walk::Nothing) {
     addAccess(variant, assemble::isOfPartials(variant.walk) ? reduction_.combine : reduction_.fold, operands);
   }
-  const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
+  const auto most = static_cast<std::size_t>(device_.programs().areDispatched() ? device_.limits.images
+                                                                                : device_.limits.drawBuffers);
   const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
+  if (variant.toBuffer) return visit(variant, 0, planes);  // which has room for all
   for (std::size_t first = 0; first < planes; first += most) {
     const std::size_t count = std::min(most, planes - first);
     if (planes > most) {

@@ -78,6 +78,8 @@ class ReducePasses {
   /// Whether work groups may fold partial results together: their shared memory must have room for the
   /// accumulators of all invocations.
   bool mayGroup() const;
+  /// Whether a scan in one pass has buffers besides its images.
+  bool mayChain() const;
   /// Whether runs step by packed texels: all inputs are packed, and blocks consist of whole texels.
   bool foldsByTexel(const assemble::Index4& blocks) const;
   /// Whether work groups fold blocks: these have enough elements side by side for their invocations.

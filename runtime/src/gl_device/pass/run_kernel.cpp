@@ -113,16 +113,14 @@ class PlanExecution {
   /// Makes the driver start compiling the program of a pass. False if the program exists already.
   bool start(const Pass& pass) {
     selectOperands(pass);
-    return targets_.empty() ||
-           device_.programs().selected().startKernelProgram(pass.kernel, operands_, call_.domain);
+    return targets_.empty() || programs(pass).startKernelProgram(pass.kernel, operands_, call_.domain);
   }
 
   /// Prepares everything that draw() needs. Throws sk::Error if the driver rejects something.
   void prepare(const Pass& pass) {
     selectOperands(pass);
     if (targets_.empty()) return;
-    preparedPass(device_, device_.programs().selected().kernelProgram(pass.kernel, operands_, call_.domain),
-                 targets_);
+    preparedPass(device_, programs(pass).kernelProgram(pass.kernel, operands_, call_.domain), targets_);
   }
 
   void draw(const Pass& pass) {
@@ -134,6 +132,9 @@ class PlanExecution {
   }
 
  private:
+  ProgramCache& programs(const Pass& pass) const {
+    return device_.programs().selectedFor(pass.kernel, targets_);
+  }
   void selectOperands(const Pass& pass) {
     operands_.clear();
     targets_.clear();
@@ -204,7 +205,10 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call, const assemble::
     runPlan(device, *call.plan, {operands.get(), drawn, operands.domain(), operands.layout(), rects.get()},
             [&] { targets.begin(); });
   } else {
-    ProgramCache& programs = device.programs().selected();
+    ProgramCache& programs = tiles == nullptr ? device.programs().selectedFor(kernel, targets.planes())
+                                              : device.programs().selected();
+    if (call.options.target == Target::Compute && programs.stage() == assemble::Stage::Fragment)
+      device.programs().failForImages(kernel);
     KernelProgram& program = tiles == nullptr
                                  ? programs.kernelProgram(kernel, operands.get(), operands.domain())
                                  : programs.tileProgram(kernel, *tiles, operands.get(), operands.domain());

@@ -144,8 +144,8 @@ std::array<Words, 2> scannedOnHost(const PairScan& scan, const Problem& problem)
   return words;
 }
 
-std::unique_ptr<GlDevice> open(const DeviceChoices& choices) {
-  return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Gl}), choices);
+std::unique_ptr<GlDevice> open(const DeviceChoices& choices, gl::Api api = gl::Api::Gl) {
+  return std::make_unique<GlDevice>(gl::openContext({"software", api}), choices);
 }
 
 TEST_CASE("tiles have the same results as loops") {
@@ -229,10 +229,26 @@ TEST_CASE("tiles that are folded by others than their groups keep their own item
 }
 
 TEST_CASE("a scan of integers takes one pass") {
-  const auto chained = open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}});
-  chained->passCount.emplace();
-  scanned(*chained, maps, {{98304}});
-  CHECK(chained->passCount->passes == 1);
+  for (const gl::Api api : {gl::Api::Gl, gl::Api::Es}) {
+    const auto chained =
+        open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}}, api);
+    chained->passCount.emplace();
+    const Problem problem{{98304}};
+    CHECK((scanned(*chained, maps, problem) == scannedOnHost(maps, problem)));
+    CHECK(chained->passCount->passes == 1);
+  }
+}
+
+// A program of OpenGL ES may have four images and buffers together.
+TEST_CASE("a scan takes more passes where its buffer would be one too many") {
+  gl::OpenedContext opened = gl::openContext({"software", gl::Api::Es});
+  opened.capabilities.images = opened.capabilities.outputResources = 3;
+  GlDevice device(std::move(opened),
+                  {.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}});
+  device.passCount.emplace();
+  const Problem problem{{70001}, -1, true};
+  CHECK((scanned(device, maps, problem) == scannedOnHost(maps, problem)));
+  CHECK(device.passCount->passes > 1);
 }
 
 }  // namespace

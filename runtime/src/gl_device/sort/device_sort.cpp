@@ -40,18 +40,42 @@ using program::Role;
 
 namespace {
 
+program::Scalar scalarOf(const Reordering& reordering) {
+  return reordering.keys.stream->element->fields.front().scalar;
+}
+
+bool isKeys(const Reordering& reordering, const StreamRegion& region) {
+  return region.stream == reordering.keys.stream;
+}
+
+/// Whether the words are the bits of keys, which sorted words give back. They do not for halves, whose NaNs have fewer bits.
+bool sortsBits(const Reordering& reordering) {
+  return !reordering.choosesFirst() && !program::is64Bit(scalarOf(reordering)) &&
+         reordering.keys.stream->storage != Storage::Half;
+}
+
+/// Whether the words need the places that they come from.
+WordSort::Of wordsOf(const Reordering& reordering) {
+  const auto isWithout = [&](const StreamRegion& region) {
+    return isKeys(reordering, region) && sortsBits(reordering);
+  };
+  const bool needsPlaces = reordering.places != nullptr || program::is64Bit(scalarOf(reordering)) ||
+                           !std::ranges::all_of(reordering.moved, isWithout);
+  return needsPlaces ? WordSort::Of::KeysAndPlaces : WordSort::Of::Keys;
+}
+
 /// The streams of a reordering. New elements are in new planes until all passes have run.
 class StreamSort {
  public:
   StreamSort(GlDevice& device, const Reordering& reordering)
       : device_(device),
         reordering_(reordering),
-        scalar_(reordering.keys.stream->element->fields.front().scalar),
+        scalar_(scalarOf(reordering)),
         extent_(xFirst(reordering.keys.shape)),
         count_(static_cast<std::int32_t>(reordering.keys.shape.size())) {}
 
   std::int64_t run() {
-    WordSort sort(device_, count_, needsPlaces() ? WordSort::Of::KeysAndPlaces : WordSort::Of::Keys,
+    WordSort sort(device_, count_, wordsOf(reordering_),
                   sortsBits() ? orderOfBits(scalar_, isDescending()) : WordOrder{});
     const std::int64_t first = sortWords(sort);
     std::deque<Moved> moved;
@@ -64,15 +88,8 @@ class StreamSort {
 
  private:
   bool isDescending() const { return reordering_.by == Reordering::By::DescendingKeys; }
-  bool isKeys(const StreamRegion& region) const { return region.stream == reordering_.keys.stream; }
-  bool isHalf() const { return reordering_.keys.stream->storage == Storage::Half; }
-  /// Whether the words are the bits of keys, which sorted words give back. They do not for halves, whose NaNs have fewer bits.
-  bool sortsBits() const { return !reordering_.choosesFirst() && !program::is64Bit(scalar_) && !isHalf(); }
-  bool needsPlaces() const {
-    const auto isWithout = [&](const StreamRegion& region) { return isKeys(region) && sortsBits(); };
-    return reordering_.places != nullptr || program::is64Bit(scalar_) ||
-           !std::ranges::all_of(reordering_.moved, isWithout);
-  }
+  bool isKeys(const StreamRegion& region) const { return sk::isKeys(reordering_, region); }
+  bool sortsBits() const { return sk::sortsBits(reordering_); }
 
   // ---- words ------------------------------------------------------------------------------------
 
@@ -223,7 +240,7 @@ bool maySortByDispatches(const GlDevice& device, const Reordering& reordering) {
   const bool isStoredSo =
       keys.storage == Storage::Single ||
       (keys.storage == Storage::Half && !program::is64Bit(keys.element->fields.front().scalar));
-  return isStoredSo && WordSort::isPossible(device, reordering.keys.shape.size());
+  return isStoredSo && WordSort::isPossible(device, wordsOf(reordering), reordering.keys.shape.size());
 }
 
 std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering) {

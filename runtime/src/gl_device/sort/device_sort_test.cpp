@@ -30,6 +30,12 @@ std::unique_ptr<GlDevice> open(bool sorts, int textureLimit = 0) {
   return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Gl}), choices);
 }
 
+std::unique_ptr<GlDevice> openEs(bool guaranteedLimits) {
+  const DeviceChoices choices{
+      .guaranteedLimits = guaranteedLimits, .target = Target::Compute, .traits = {.sortsByDispatches = true}};
+  return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Es}), choices);
+}
+
 struct Devices {
   std::unique_ptr<GlDevice> dispatching = open(true), hosting = open(false);
 };
@@ -218,6 +224,27 @@ TEST_CASE("flags of each type divide values by dispatches as by the host") {
     compare(devices, Algorithm::Partition, dataOf(flags), &values, {n});
     compare(devices, Algorithm::Partition, {ElementTraits<bool>::element(), bytesOf(bools)}, &values, {n});
   }
+}
+
+TEST_CASE("OpenGL ES sorts by dispatches, too") {
+  Devices devices{.dispatching = openEs(false)};
+  constexpr std::int64_t n = 4099;
+  const Data keys = dataOf(keysOf<float>(n)), longs = dataOf(keysOf<double>(n)), values = dataOf(iota(n));
+  compare(devices, Algorithm::Sort, keys, nullptr, {n});
+  compare(devices, Algorithm::SortDescending, keys, &values, {n});
+  compare(devices, Algorithm::Sort, longs, &values, {n});
+  compare(devices, Algorithm::Unique, keys, &values, {n});
+}
+
+TEST_CASE("where images of OpenGL ES hold no pairs, keys alone are sorted by dispatches") {
+  Devices devices{.dispatching = openEs(true)};
+  constexpr std::int64_t n = 4099;
+  const Data keys = dataOf(keysOf<float>(n)), values = dataOf(iota(n));
+  compare(devices, Algorithm::Sort, keys, nullptr, {n});
+  PassCount& passes = devices.dispatching->passCount.emplace();
+  const Outcome expected = carryOut(*devices.hosting, Algorithm::Sort, keys, &values, {n}, nullptr);
+  CHECK((carryOut(*devices.dispatching, Algorithm::Sort, keys, &values, {n}, nullptr) == expected));
+  CHECK(passes.passes == 0);  // the host has sorted
 }
 
 TEST_CASE("values of any type and views follow their keys") {

@@ -36,7 +36,8 @@ WordSort::WordSort(GlDevice& device, std::int32_t count, Of of, const WordOrder&
   shift_ = (keys ? *keys : *pairs).shift();
 }
 
-bool WordSort::isPossible(const GlDevice& device, std::int64_t count) {
+bool WordSort::isPossible(const GlDevice& device, Of of, std::int64_t count) {
+  if (of != Of::Keys && !device.programs().mayStore(sortWordPairs())) return false;
   constexpr std::int64_t mostCounts =
       std::int64_t{assemble::radixSumTile} * assemble::radixSumTile;  // their totals are one tile
   const std::int64_t tiles = (count - 1) / assemble::radixTile(device.programs().computeProfile()) + 1;

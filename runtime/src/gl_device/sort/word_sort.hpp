@@ -55,8 +55,9 @@ class WordSort {
   };
   WordSort(GlDevice& device, std::int32_t count, Of of, const WordOrder& order = {});
 
-  /// Whether a device sorts this number of words: temporaries for all of them fit into textures without layers.
-  static bool isPossible(const GlDevice& device, std::int64_t count);
+  /// Whether a device sorts this number of words: temporaries for all of them fit into textures without layers, and compute programs
+  /// write those of pairs.
+  static bool isPossible(const GlDevice& device, Of of, std::int64_t count);
 
   /// Sorts by the lowest `bits` bits of words: `keys` to `pairs`, or to `keys` if there are no pairs, or `pairs`.
   void sort(int bits = 32) { sortByAll(keys.has_value(), bits); }

@@ -26,7 +26,6 @@
 #include "device/write_scope.hpp"
 #include "gl/buffer.hpp"
 #include "gl/queue_points.hpp"
-#include "gl_device/gl_device.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
 #include "sk/program.hpp"

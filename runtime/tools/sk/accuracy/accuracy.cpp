@@ -373,9 +373,9 @@ void addAccuracy(CLI::App& app) {
                    "native, gpu, gpu:N, software, gl, or a part of a renderer's name (default: the best)")
       ->type_name("NAME");
   command
-      ->add_option(
-          "--profile", options->profile,
-          "glsl330 or essl300: run fragment programs, glsl430: compute programs (default: the faster)")
+      ->add_option("--profile", options->profile,
+                   "glsl330 or essl300: run fragment programs, glsl430 or essl310: compute programs "
+                   "(default: the faster)")
       ->type_name("NAME");
   command->add_option("--size", options->size, "Elements (default: 2^20); for a .sk file also HxW")
       ->type_name("N")

@@ -32,11 +32,9 @@ Json describe(const sk::Device& device) {
   info["shading_language"] = device.shadingLanguage();
   info["software"] = device.isSoftware();
   const sk::DeviceLimits& limits = device.limits();
-  info["limits"] = {{"texture_side", limits.textureSize},
-                    {"texture_layers", limits.textureLayers},
-                    {"draw_buffers", limits.drawBuffers},
-                    {"texture_units", limits.textureUnits},
-                    {"uniform_components", limits.uniformComponents}};
+  info["limits"] = {{"texture_side", limits.textureSize},   {"texture_layers", limits.textureLayers},
+                    {"draw_buffers", limits.drawBuffers},   {"images", limits.images},
+                    {"texture_units", limits.textureUnits}, {"uniform_components", limits.uniformComponents}};
   return info;
 }
 
@@ -77,7 +75,7 @@ void measure(sk::Device& device, Json& info) {
 std::string keyOf(const sk::Device& device) {
   std::string driver = device.driver();
   if (device.isSoftware()) driver += probeProcessor().dump();
-  driver += std::to_string(device.limits().textureSize);
+  driver += std::to_string(device.limits().textureSize) + "," + std::to_string(device.limits().images);
   return sk::driverKey(device.name(), driver, device.profile());
 }
 

@@ -119,7 +119,9 @@ void addInfo(CLI::App& app) {
           "--device", options->device,
           "Only this one: native, reference, gpu, gpu:N, software, gl, or a part of a renderer's name")
       ->type_name("NAME");
-  command->add_option("--profile", options->profile, "glsl330 or essl300 (default: the device's best)")
+  command
+      ->add_option("--profile", options->profile,
+                   "glsl330, glsl430, essl300 or essl310 (default: the device's best)")
       ->type_name("NAME");
   CLI::Option* json = command->add_option("--json", options->jsonFile, "JSON, to a file or standard output")
                           ->type_name("[FILE]")

@@ -57,10 +57,11 @@ class Report {
     line("renders", "{}", info_.at("software").get<bool>() ? "in software" : "in hardware");
     const Json& limits = info_.at("limits");
     line("promises",
-         "textures of {0} x {0} texels, {1} layers; {2} draw buffers, {3} texture units, {4} uniform "
-         "components",
+         "textures of {0} x {0} texels, {1} layers; {2} draw buffers, {3} images of compute programs, {4} "
+         "texture "
+         "units, {5} uniform components",
          textOf(limits.at("texture_side")), textOf(limits.at("texture_layers")),
-         textOf(limits.at("draw_buffers")), textOf(limits.at("texture_units")),
+         textOf(limits.at("draw_buffers")), textOf(limits.at("images")), textOf(limits.at("texture_units")),
          textOf(limits.at("uniform_components")));
     const Json& allocates = info_.at("allocates");
     line("gives", "textures {} texels wide or high, {} layers, {:.3g} GiB in one texture",

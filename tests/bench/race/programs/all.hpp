@@ -100,6 +100,7 @@ RACE_OURS(waveLoop);
 RACE_CALLS(waveLoop);
 Check chainCheck(const Problem& problem);
 RACE_OURS(chain);
+RACE_OURS(pipeline);
 std::unique_ptr<Task> chainInOneKernel(sk::Device& device, const sk::CallOptions& options,
                                        const Problem& problem);
 

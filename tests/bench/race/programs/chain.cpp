@@ -56,6 +56,15 @@ class ChainInOneKernel final : public ChainTask {
   }
 };
 
+class ChainInPipeline final : public ChainTask {
+ public:
+  ChainInPipeline(sk::Device& device, const sk::CallOptions& options, const Problem& p)
+      : ChainTask(device, p) {
+    const auto chained = loops::chained.with(options);
+    loop_ = device.record([&] { chained(x_, x_); });
+  }
+};
+
 }  // namespace
 
 Check chainCheck(const Problem& p) {
@@ -73,6 +82,10 @@ std::unique_ptr<Task> chainOurs(sk::Device& device, const sk::CallOptions& optio
 
 std::unique_ptr<Task> chainInOneKernel(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
   return std::make_unique<ChainInOneKernel>(device, options, p);
+}
+
+std::unique_ptr<Task> pipelineOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
+  return std::make_unique<ChainInPipeline>(device, options, p);
 }
 
 }  // namespace race
