@@ -23,7 +23,7 @@ namespace {
 using Catch::Matchers::Contains;
 using Field = sk::Stream<float>;
 
-constexpr Layout glLayouts[] = {{"glsl330", 0}, {"glsl430", 0}, {"glsl330", smallLimits[1]}};
+constexpr Layout glLayouts[] = {{"glsl330", 0}, {"glsl430", 0}, {"essl300", 0}, {"glsl330", smallLimits[1]}};
 
 struct Fields {
   std::array<Field, 4> of;

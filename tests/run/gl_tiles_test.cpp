@@ -53,6 +53,9 @@ void run(const Drawn& call, bool wraps, Fields& f) {
     case 5: return tiled::damp(0.1f, a, b);
     case 6: return tiled::place(a, b);
     case 7: return tiled::twice(a, b);
+    case 9: return wraps ? tiled::jumpAround(a, b) : tiled::jump(a, b);
+    case 10: return wraps ? tiled::jumpAround(a, a) : tiled::jumpMirrored(a, b);
+    case 11: return wraps ? tiled::around(b, a) : tiled::jumpBordered(a, b);
     default: return std::swap(a, b);
   }
 }
@@ -62,12 +65,12 @@ TEST_CASE("loops of any calls in tiles on a GPU compute the bits of their calls 
   std::mt19937 engine(3);
   const auto draw = [&](int most) { return static_cast<int>(engine() % static_cast<unsigned>(most)); };
   int inTiles = 0;
-  for (int trial = 0; trial < 60; ++trial) {
+  for (int trial = 0; trial < 70; ++trial) {
     const bool wraps = draw(2) == 0;
     const sk::Shape shape{64 + draw(40), 64 + 4 * draw(16)};
     std::vector<Drawn> calls;
     for (int i = 1 + draw(3); i > 0; --i) {
-      Drawn call{draw(9), static_cast<std::size_t>(draw(4)), 0, 0, 0};
+      Drawn call{draw(12), static_cast<std::size_t>(draw(4)), 0, 0, 0};
       call.b = (call.a + 1 + static_cast<std::size_t>(draw(3))) % 4;
       do call.c = static_cast<std::size_t>(draw(4));
       while (call.c == call.a || call.c == call.b);

@@ -3,7 +3,8 @@
 // Compute programs that run several iterations of a loop's calls on a tile of their domain. A work group fetches the texels of the tile
 // and of as many around it as all iterations reach. It computes call after call; of what is around the tile, each call
 // leaves less that is right, down to the tile itself. What calls read at neighbours is in shared memory, everything else stays with
-// its invocation. In the end the group stores the tile. Groups compute what is around their tiles for themselves, so that none waits for another.
+// its invocation. In the end the group stores the tile. Groups compute what is around their tiles for themselves, so that none waits
+// for another.
 //
 //    u  ------[ heat ]--- a1 ---[ heat ]--- a2 ...   value 0 is u before an iteration, value 1 is what heat has computed;
 //                  (next[0] = 1)                      in the next iteration, value 0 is that

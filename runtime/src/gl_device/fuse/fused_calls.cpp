@@ -52,9 +52,12 @@ std::int64_t elementBytes(const StreamRegion& region) {
 }
 
 std::string describeParameter(const Parameter& p) {
-  return fmt::format("// {}: {} {} {} {} {} {} {} {}{}{}{}{}{}\n", p.symbol, static_cast<int>(p.role),
-                     p.element->name, p.element->fields.size(), p.rank, static_cast<int>(p.boundary),
-                     p.border, p.reach, p.filter ? "f" : "", p.usesIndex ? "i" : "", p.usesExtent ? "e" : "",
+  std::string fields;
+  for (const program::Field& field : p.element->fields)
+    fields += fmt::format(" {}.{}x{}", field.path, static_cast<int>(field.scalar), field.width);
+  return fmt::format("// {}: {} {}{} {} {} {} {} {}{}{}{}{}{}\n", p.symbol, static_cast<int>(p.role),
+                     p.element->name, fields, p.rank, static_cast<int>(p.boundary), p.border, p.reach,
+                     p.filter ? "f" : "", p.usesIndex ? "i" : "", p.usesExtent ? "e" : "",
                      p.usesAt ? "a" : "", p.usesNear ? "n" : "", p.usesSample ? "s" : "");
 }
 

@@ -3,7 +3,7 @@
 // The calls of a loop as one call that runs several iterations by tiles (assemble/program/tile_program.hpp).
 //
 // Each run begins with the streams that an iteration reads before it writes them, and ends with these; what an iteration writes
-// anew is not stored. Call by call, the last iterations then write everything else (TiledLoop::after).
+// anew is not stored. Call by call, the last iterations then write everything else (TiledIteration::after).
 #pragma once
 
 #include <cstdint>

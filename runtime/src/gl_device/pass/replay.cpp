@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// What is repeated runs as ever while a log notes its GL commands, until the streams' textures are again
-// where they were before an earlier iteration: swaps, and outputs that are drawn to a second texture, move them. From
-// then on the logs of this cycle are run in place of the calls, each followed by a gate (gl/loop_gate.hpp) in a loop
-// with a condition. Whatever makes the textures differ from what the logs expect begins a new cycle.
+// Takes notes until the streams' textures are again where they were before an earlier iteration: swaps, and outputs that
+// are drawn to a second texture, move them. From then on the logs of this cycle are run in place of the calls, each followed by a
+// gate (gl/loop_gate.hpp) in a loop with a condition. Whatever makes the textures differ from what the logs expect begins a
+// new cycle. What is said of an iteration holds for whatever is repeated.
 #include "gl_device/pass/replay.hpp"
 
 #include <algorithm>
