@@ -53,6 +53,7 @@
 #include <vector>
 
 #include "ir/intrinsics.hpp"
+#include "ir/plan.hpp"
 #include "ir/type.hpp"
 #include "support/loc.hpp"
 
@@ -61,7 +62,6 @@ namespace skc::ir {
 using VarId = std::uint32_t;
 using FunctionId = std::uint32_t;
 using ConstantId = std::uint32_t;
-using KernelId = std::uint32_t;
 using TableId = std::uint32_t;
 
 // clang-format off: one node a line
@@ -435,55 +435,6 @@ struct PrecisionVariants {
   std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
   std::optional<KernelId> half;  ///< rounds every float that it computes to half
   std::string whyNotWide, whyNotHalf;  ///< why a kernel that computes floats has no such variant
-};
-
-// ---- plans ------------------------------------------------------------------------------------
-
-/// What a target can read and write in one pass.
-struct Limits {
-  std::uint32_t drawBuffers = 0;  ///< planes that a pass may write
-  std::uint32_t textureUnits = 0;  ///< planes that a pass may read
-  bool operator==(const Limits&) const = default;
-};
-
-/// A value that one pass of a plan writes and later ones read: a local variable of the whole kernel.
-struct Temporary {
-  std::string name;
-  Type type;
-  double computeCost;  ///< cost of computing it once, see split/cost.hpp
-  std::uint32_t readers;  ///< passes that read it
-};
-
-/// The argument for a parameter of a pass: an argument of the whole kernel, or a temporary.
-struct PassOperand {
-  bool isTemporary;
-  std::uint32_t index;
-};
-struct Pass {
-  KernelId kernel;  ///< Kernel::pass is set there
-  std::vector<PassOperand> operands;  ///< one per parameter
-  double cost;
-};
-
-/// A plane of an argument of the whole kernel.
-struct ArgumentPlane {
-  std::uint32_t argument, plane;
-  bool operator==(const ArgumentPlane&) const = default;
-};
-/// Planes of one texel format that are copied to the layers of one texture, and so share a texture unit.
-struct Stack {
-  Type type;
-  std::vector<ArgumentPlane> layers;
-};
-
-/// The passes, in order, by which a kernel runs that exceeds the limits of a target.
-struct Plan {
-  Limits limits;  ///< what its passes need
-  std::vector<Temporary> temporaries;
-  std::vector<Stack> stacks;
-  std::vector<Pass> passes;
-  double cost = 0;
-  double costWithoutTemporaries = 0;  ///< if every value were computed wherever it is needed
 };
 
 /// Says that the kernel is a pass of another kernel's plan.
