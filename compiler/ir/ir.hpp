@@ -523,12 +523,14 @@ struct PipelinePass {
   KernelId kernel;
   std::vector<PassOperand> operands;  ///< one per parameter of the kernel
   std::vector<std::string> calls;  ///< the names of the kernels that it calls, in order
-  bool isOverDomain = true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
+  bool isOverDomain =
+      true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
 };
 
 /// A function over streams: kernels, called in order. Calls that follow each other element by element are one pass.
 struct Pipeline {
-  Kernel face;  ///< what C++ calls: name, parameters, bundles and choices. It has no function, and is not in the module's table
+  Kernel
+      face;  ///< what C++ calls: name, parameters, bundles and choices. It has no function, and is not in the module's table
   std::vector<LocalStream> locals;  ///< those that one pass writes and a later one reads
   std::vector<PipelinePass> passes;  ///< at least one
   /// The pipeline is a kernel of the module: its only pass, which has its name and parameters.

@@ -192,7 +192,8 @@ struct Visitor {
 
   void visit(Kernel& kernel) {
     auto& [name, scope, signature, entry, params, bundles, reduction, isScan, isSynthesized, isNativeOnly,
-           parts, isPart, isOfPipeline, assertions, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
+           parts, isPart, isOfPipeline, assertions, plans, pass, variants, choices, loops, unrolled, loc] =
+        kernel;
     for (KernelParam& param : params) visit(param);
     for (Plan& plan : plans) visit(plan);
   }

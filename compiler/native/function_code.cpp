@@ -287,8 +287,7 @@ void FunctionCode::writeUnchecked(const Loop& n, llvm::BasicBlock* end) {
   llvm::BasicBlock* const inside = newBlock("unchecked");
   llvm::BasicBlock* const outside = newBlock("checked");
   // so that values of the loop without tests stay in registers
-  b.CreateCondBr(areInside, inside, outside,
-                 llvm::MDBuilder(b.getContext()).createLikelyBranchWeights());
+  b.CreateCondBr(areInside, inside, outside, llvm::MDBuilder(b.getContext()).createLikelyBranchWeights());
   b.SetInsertPoint(inside);
   writeWalks(n, loop, indices, iterations, end);
   b.SetInsertPoint(outside);

@@ -114,7 +114,8 @@ std::uint32_t RowPlan::carried() const {
   std::uint32_t words = 0;
   for (const VarId var : assigned) {
     if (!isPerRow(var) || inner.contains(var)) continue;
-    for (const Scalar scalar : scalarsOf(module_, entry_.variables[var].type)) words += is64Bit(scalar) ? 2 : 1;
+    for (const Scalar scalar : scalarsOf(module_, entry_.variables[var].type))
+      words += is64Bit(scalar) ? 2 : 1;
   }
   return words;
 }

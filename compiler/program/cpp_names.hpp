@@ -17,8 +17,8 @@ namespace skc::emit {
 /// The kernels and pipelines that one callable object stands for: the overloads of one name in one namespace.
 struct Callable {
   std::vector<std::string> scope;
-  std::string object;              ///< "diffuse"
-  std::string type;                ///< "DiffuseKernel"
+  std::string object;  ///< "diffuse"
+  std::string type;  ///< "DiffuseKernel"
   std::vector<std::size_t> units;  ///< indices into Program::units(), whose kernels these are
   std::vector<std::size_t> pipelines = {};  ///< indices into Module::pipelines, of those that are no kernels
 };

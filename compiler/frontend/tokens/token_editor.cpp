@@ -427,7 +427,8 @@ class Editor {
     const TokenBuilder builder(preprocessor_);
     syntax_.addLocalStream(cursor_.peek().getLocation());
     copyToken();
-    for (const tok::TokenKind bracket : {tok::l_brace, tok::r_brace})  // no warning of values that are not there
+    for (const tok::TokenKind bracket :
+         {tok::l_brace, tok::r_brace})  // no warning of values that are not there
       out_.push_back(builder.make(bracket, cursor_.take().getLocation()));
     return true;
   }

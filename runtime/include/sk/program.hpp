@@ -366,7 +366,8 @@ struct PipelinePass {
   const Kernel* kernel;  ///< the fold of a reduction or a scan
   const Reduction* reduction = nullptr;
   bool isScan = false;
-  bool isOverDomain = true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
+  bool isOverDomain =
+      true;  ///< runs over the pipeline's domain; false: over the one that its arguments define
   std::span<const PassOperand> operands = {};  ///< one per parameter
 };
 

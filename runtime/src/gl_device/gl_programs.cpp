@@ -46,13 +46,12 @@ constexpr std::string_view needOfCompute = "OpenGL 4.3 or ES 3.1";
 /// The requested barrier, else the strongest one that the language has.
 Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
   if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
-    throw Error(
-        fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
-                    capabilities.renderer,
-                    capabilities.api == gl::Api::Gl ? "GLSL 3.30"
-                    : capabilities.hasCompute       ? "ESSL 3.10"
-                                                    : "ESSL 3.00"),
-        Error::Kind::Device);
+    throw Error(fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
+                            capabilities.renderer,
+                            capabilities.api == gl::Api::Gl ? "GLSL 3.30"
+                            : capabilities.hasCompute       ? "ESSL 3.10"
+                                                            : "ESSL 3.00"),
+                Error::Kind::Device);
   }
   return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
 }

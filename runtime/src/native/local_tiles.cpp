@@ -17,7 +17,6 @@
 #include "native/memory.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
-#include "native/native_pass.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/thread_pool.hpp"
 #include "native/tiled_call.hpp"
