@@ -16,6 +16,7 @@
 #include "native/components.hpp"
 #include "native/memory.hpp"
 #include "sk/native/code.hpp"
+#include "sk/native/parallel.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

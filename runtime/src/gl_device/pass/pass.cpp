@@ -218,7 +218,7 @@ void prepareCopy(GlDevice& device, const program::Element& element, const Region
   if (!byKernel && isBlit(device, source, target)) return;
   for (const program::Field& field : element.fields) {
     const Operand operands[] = {{nullptr, source, {}}, {}};
-    const Kernel& kernel = copyKernel(field);
+    const program::Kernel& kernel = copyKernel(field);
     device.programs().selectedFor(kernel, gl::formatOf(field)).kernelProgram(kernel, operands, target);
   }
 }
