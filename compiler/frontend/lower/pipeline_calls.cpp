@@ -8,6 +8,8 @@
 
 namespace skc::frontend {
 
+using clang::SourceLocation;
+
 namespace {
 
 /// All variables that an expression names.
