@@ -281,7 +281,8 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
                                !construct->requiresZeroInitialization();
     if (!uninitialised) {
       initialising_.insert(declaration);
-      const auto done = llvm::make_scope_exit([&] { initialising_.erase(declaration); });  // after errors, too
+      const auto done =
+          llvm::make_scope_exit([&] { initialising_.erase(declaration); });  // after errors, too
       init = value(initializer);
     }
   }
@@ -306,7 +307,7 @@ bool FunctionLowering::head(const clang::Stmt* init, const clang::VarDecl* decla
 }
 
 void FunctionLowering::ifStatement(const clang::IfStmt* s) {
-  if (const auto kept = s->getNondiscardedCase(module_.context())) {   // `if constexpr`
+  if (const auto kept = s->getNondiscardedCase(module_.context())) {  // `if constexpr`
     if (*kept) statement(*kept);
     return;
   }
@@ -441,8 +442,8 @@ void FunctionLowering::numberCases(ir::Switch& result, Loc loc) {
   std::int32_t count = 0;
   for (ir::Case& one : result.cases) {
     for (std::int64_t& label : one.values) {
-      ExprPtr wanted = ir::makeExpr(type, ir::Literal::wide(static_cast<std::uint64_t>(label)), loc);
-      ExprPtr isHere =
+      ir::ExprPtr wanted = ir::makeExpr(type, ir::Literal::wide(static_cast<std::uint64_t>(label)), loc);
+      ir::ExprPtr isHere =
           ir::binary(ir::BinaryOp::Equal, ir::varRef(function_, value, loc), std::move(wanted), loc);
       ir::Block found;
       found.push_back(ir::assign(ir::varRef(function_, number, loc), ir::literal(count, loc), loc));
