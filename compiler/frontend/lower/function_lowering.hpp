@@ -276,7 +276,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::map<Bundles::Place, ir::VarId> members_;  ///< of bundles
-  /// Of a pass: streams, and the parameters of kernels that read them as gathers.
+  /// The gathers of a pass, by stream and by the kernel's parameter that reads it.
   std::map<std::pair<const clang::VarDecl*, const clang::ParmVarDecl*>, ir::VarId> gathers_;
   std::unordered_set<const clang::Decl*> initialising_;  ///< variables whose initial values are being lowered
   std::unordered_map<ir::VarId, ir::ExprPtr> aliases_;  ///< what parameters name that are parts of others

@@ -288,7 +288,7 @@ struct Kernel {
   bool usesLongs = false;  ///< declarations or body use sk_long or sk_ulong
   bool usesExactSums = false;  ///< the body has floats that no driver may simplify: sk_precise, sk_keep()
   std::span<const IntrinsicUse> intrinsics = {};  ///< the intrinsics that declarations or body call
-  /// Of the body, in its order. Empty in code that an older skc has generated.
+  /// What the body defines, in the order of its text; empty in code that an older skc has generated.
   std::span<const Definition> definitions = {};
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, least restrictive first
   std::uint8_t planCount = 0;

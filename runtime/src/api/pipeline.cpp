@@ -136,8 +136,7 @@ class PipelineCall {
           if (to.stream == nullptr || from.stream == nullptr || !overlap(to, from)) continue;
           fail(Error::Kind::Misuse,
                "'{}' and '{}' are one stream, of which one kernel writes elements before another uses them; "
-               "give them "
-               "different streams",
+               "give them different streams",
                pipeline_.parameters[written].name, pipeline_.parameters[read].name);
         }
       }
@@ -207,8 +206,7 @@ class PipelineCall {
       if (region.distributed != nullptr || region.placement.whole.rank() != 0) {
         fail(Error::Kind::Misuse,
              "'{}' is a part of a domain, and '{}' is a local stream, which is a whole one; call the kernels "
-             "one by one with "
-             "streams of the domain between them",
+             "one by one with streams of the domain between them",
              pipeline_.parameters[i].name, pipeline_.locals.front());
       }
       if (found == nullptr && region.stream != nullptr) found = region.stream->device;

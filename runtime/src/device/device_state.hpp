@@ -158,7 +158,7 @@ class DeviceState {
   /// Runs recorded calls once, in any way that has the effect of one after the other, but for the elements of `locals`: streams that
   /// nothing else uses. Returns false, without any effect, if that saves nothing.
   virtual bool runTogether(LoopState& /*calls*/, std::span<StreamState* const> /*locals*/) { return false; }
-  /// Whether it may, for streams of so many elements: recording calls takes longer than checking them.
+  /// Whether runTogether() can pay for streams of this size: recording a call takes longer than checking it.
   virtual bool mayRunTogether(std::int64_t /*elements*/) const { return false; }
   /// Whether argument `i` of a checked call, a region with strides, needs a temporary stream in its place
   /// (call/placed.hpp).

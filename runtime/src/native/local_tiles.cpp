@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "native/memory.hpp"
 #include "native/native_device.hpp"
 #include "native/native_pass.hpp"
+#include "native/per_worker.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/thread_pool.hpp"
 #include "native/tiled_call.hpp"
@@ -52,15 +52,16 @@ class LocalTiles {
       }
       calls.push_back(call->withArrays());
     }
-    makeScratch();
+    const std::int64_t cost = std::int64_t{1} << 20;  // more than it takes to wake a thread
+    const std::int64_t threads = native::threadsFor(tiles_, cost);
+    PerWorker<Scratch> scratch(threads);
+    for (std::int64_t t = 0; t < threads; ++t) allocate(scratch.of(static_cast<int>(t)));
     writes.begin();
     {
       const NativePass traced(device_, [&] { return record(); });
-      const std::int64_t cost = std::int64_t{1} << 20;  // more than it takes to wake a thread
-      native::inParallel(tiles_, cost, native::Deal::AsTheyCome, [&](native::Range range) {
-        std::unique_ptr<Scratch> scratch = takeScratch();
-        for (std::int64_t tile = range.begin; tile < range.end; ++tile) runTile(tile, calls, *scratch);
-        giveScratch(std::move(scratch));
+      native::inParallel(tiles_, cost, native::Deal::AsTheyCome, [&](native::Range range, int worker) {
+        for (std::int64_t tile = range.begin; tile < range.end; ++tile)
+          runTile(tile, calls, scratch.of(worker));
       });
     }
     for (const std::unique_ptr<TiledCall>& call : calls_) {
@@ -197,12 +198,15 @@ class LocalTiles {
       constexpr double shortestRow = 256;
       double length = std::pow(room, 1.0 / left--);
       if (d == 0) length = std::max(length, shortestRow);
-      length = std::min(length, static_cast<double>(extent_[d]));
+      if (length >= static_cast<double>(extent_[d])) {
+        room /= static_cast<double>(extent_[d]);
+        continue;
+      }
       const double own = length - 2 * static_cast<double>(most_[d]);
       if (own < 1) return std::nullopt;
       room /= length;
       cuts.counts[d] = static_cast<std::int64_t>(std::ceil(static_cast<double>(extent_[d]) / own));
-      if (cuts.counts[d] > 1) cuts.work *= length / own;
+      cuts.work *= length / own;
     }
     return cuts;
   }
@@ -230,33 +234,19 @@ class LocalTiles {
     return std::min((extent_[d] + counts_[d] - 1) / counts_[d] + 2 * local.most[d], extent_[d]);
   }
 
-  void makeScratch() {
-    for (std::int64_t t = 0; t < native::mostThreads(); ++t) {
-      Scratch& scratch = *free_.emplace_back(std::make_unique<Scratch>());
-      for (const Local& local : locals_) {
-        std::vector<ArrayMemory>& arrays = scratch.arrays.emplace_back();
-        std::int64_t elements = 1;
-        for (std::size_t d = 0; d < 4; ++d) elements *= lengthOf(local, d);
-        elements += 2 * slackOf(local);
-        for (const ComponentType& type : local.stream->components.types())
-          arrays.push_back(allocated(static_cast<std::size_t>(elements) * type.storedBytes));
-      }
+  void allocate(Scratch& scratch) const {
+    for (const Local& local : locals_) {
+      std::vector<ArrayMemory>& arrays = scratch.arrays.emplace_back();
+      std::int64_t elements = 1;
+      for (std::size_t d = 0; d < 4; ++d) elements *= lengthOf(local, d);
+      elements += 2 * slackOf(local);
+      for (const ComponentType& type : local.stream->components.types())
+        arrays.push_back(allocated(static_cast<std::size_t>(elements) * type.storedBytes));
     }
   }
 
   /// Elements before and behind those of a tile, of which code may read some without using them.
   std::int64_t slackOf(const Local& local) const { return lengthOf(local, 0) + mostStaged; }
-
-  std::unique_ptr<Scratch> takeScratch() {
-    const std::scoped_lock lock(mutex_);
-    std::unique_ptr<Scratch> taken = std::move(free_.back());
-    free_.pop_back();
-    return taken;
-  }
-  void giveScratch(std::unique_ptr<Scratch> taken) {
-    const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(taken));
-  }
 
   void runTile(std::int64_t tile, std::span<const native::Call> calls, const Scratch& scratch) const {
     const Extents number = numberOf(tile), begin = cut(number);
@@ -330,8 +320,6 @@ class LocalTiles {
   int cutAxes_ = 0;
   Extents counts_{1, 1, 1, 1};  ///< of tiles along each dimension
   std::int64_t tiles_ = 0;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Scratch>> free_;
 };
 
 }  // namespace
